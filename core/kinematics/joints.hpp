@@ -1,0 +1,20 @@
+// The loader's joints: values in SI units at a time.
+#pragma once
+
+#include "core/base/time.hpp"
+
+namespace hulltrack {
+
+/// Gantry travel d_x (m), slew theta_r (rad), luff theta_p (rad), after sign, scale and bias.
+struct Joints {
+  double d_x = 0.0;
+  double theta_r = 0.0;
+  double theta_p = 0.0;
+};
+
+struct JointSample {
+  MeasurementTime time;  // when the values were true: PLC latency already subtracted
+  Joints joints;
+};
+
+}  // namespace hulltrack

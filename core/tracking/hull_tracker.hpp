@@ -1,0 +1,78 @@
+// One scan in, one TrackResult out: where is the hull, and may anybody believe it?
+//
+// Frames: scans in L, joints -> W, map in H; the answer is T_W_H. The pose is that of the middle of
+// the scan. Asks no clock and does no I/O; the same calls in the same order give the same bits.
+// Thread rule: one owner. Cost: bounded by the scan's points (see README.md of core).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/status.hpp"
+#include "core/geometry/scan.hpp"
+#include "core/geometry/se3.hpp"
+#include "core/kinematics/joint_history.hpp"
+#include "core/kinematics/loader_kinematics.hpp"
+#include "core/map/hull_map.hpp"
+#include "core/tracking/metrics.hpp"
+#include "core/tracking/tracker_config.hpp"
+
+namespace hulltrack {
+
+/// What the tracker has to know of one LiDAR.
+struct SensorConfig {
+  Pose mount = Pose::Identity();  // T_lidar
+  double min_range = 1.0;         // m
+  double max_range = 120.0;       // m
+  std::vector<Box> exclude;       // in L: the machine's own chute and boom
+};
+
+/// What surrounds one scan besides its points.
+struct FrameInputs {
+  bool hold = false;       // the PLC's command word: no tracking wanted
+  bool reacquire = false;  // rising edge since the previous frame
+  Faults plc_faults = 0;   // plc_stale, plc_value as they stood at the scan
+};
+
+/// What one frame came to, healthy or not.
+struct TrackResult {
+  std::uint32_t frame = 0;
+  MeasurementTime time{};          // middle of the scan
+
+  bool registered = false;         // everything below up to `metrics` is meaningful
+  Pose T_W_H = Pose::Identity();   // hull pose found by this frame's registration
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // T_W_H * p_ref - p_ref, m
+  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();           // of T_W_H, rad
+  bool converged = false;
+  int iterations = 0;
+  std::uint32_t matched = 0;       // points of the last ICP iteration
+  double sigma_translation = -1.0; // 1-sigma, largest principal axis, m; -1 = unknown
+  double sigma_rotation = -1.0;    // rad; -1 = unknown
+  DistanceMetrics metrics;         // metrics.valid tells whether there are any
+
+  State state = State::starting;   // starting/held/fault as far as the frame's inputs tell
+  bool health = false;             // true if and only if state == tracking
+  Faults faults = 0;
+  std::string reason;              // why health is 0, in plain words with figures; empty when healthy
+};
+
+class HullTracker {
+ public:
+  /// `map` must not be null and is shared, immutable. `sensors` in the order of Scan::lidars.
+  HullTracker(const TrackerConfig& config, const MachineConfig& machine, std::vector<SensorConfig> sensors,
+              std::shared_ptr<const HullMap> map);
+  ~HullTracker();
+  HullTracker(HullTracker&&) noexcept;
+  HullTracker& operator=(HullTracker&&) noexcept;
+
+  /// `joints` must hold every sample available; a scan that it does not bracket is not registered.
+  [[nodiscard]] TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,57 @@
+// Settings of the tracker: [hull], [tracking], [health] of the configuration (ICD 5) as plain values.
+#pragma once
+
+#include <optional>
+
+#include "core/base/time.hpp"
+#include "core/geometry/box.hpp"
+#include "core/geometry/se3.hpp"
+
+namespace hulltrack {
+
+struct HullConfig {
+  Eigen::Vector3d reference_point = Eigen::Vector3d::Zero();  // in H, m
+  std::optional<Box> region;                                  // in W; empty = no crop
+  Box envelope{{-15.0F, -2.0F, -10.0F}, {15.0F, 2.0F, 10.0F}};  // displacements a berthed ship can have, m
+  double max_speed = 0.3;                                     // m/s
+};
+
+enum class RegistrationMethod {
+  automatic,       // this version's best
+  point_to_point,  // the paper, 2.3
+};
+
+/// Defaults: the paper's parameters (Guo 2025, 2.3).
+struct RegistrationConfig {
+  double voxel_size = 0.5;                   // m
+  double max_correspondence_distance = 0.3;  // m
+  int max_iterations = 50;
+  double translation_epsilon = 0.001;        // m
+  double rotation_epsilon = radians(0.1);    // rad
+  RegistrationMethod method = RegistrationMethod::automatic;
+};
+
+/// Which map points the metrics are taken over (ICD 3).
+enum class MetricsScope {
+  visible_subset,  // live: visible points of the fixed 0.4 m subset
+  visible_full,    // every visible point
+  whole_map,       // the paper's literal definition: every map point, seen or not
+};
+
+struct HealthConfig {
+  double q1_healthy = 0.12;      // m: at or below = tracking
+  double q1_lost = 0.25;         // m: above = lost
+  double metric_range = 25.0;    // m from the sensor
+  int min_matched = 200;
+  int recover_frames = 5;        // good frames in a row before health returns
+  Nanoseconds max_age = std::chrono::milliseconds(500);
+};
+
+struct TrackerConfig {
+  HullConfig hull;
+  RegistrationConfig registration;
+  HealthConfig health;
+  MetricsScope metrics_scope = MetricsScope::visible_subset;
+};
+
+}  // namespace hulltrack
