@@ -15,15 +15,15 @@ enum class TimeSource { receive, sensor };
 
 struct LidarConfig {
   std::string name = "boom";
-  std::string model;                    // a name of the model registry
+  std::string model;  // a name of the model registry
   std::string bind = "0.0.0.0";
   std::uint16_t port = 2368;
-  std::string source;                   // only datagrams from this address; empty = any
-  std::string multicast;                // group to join; empty = none
-  std::string calibration;              // file, absolute after reading; empty = none
-  Pose mount = Pose::Identity();        // T_lidar: L -> boom
-  double min_range = 1.0;               // m
-  double max_range = 120.0;             // m
+  std::string source;             // only datagrams from this address; empty = any
+  std::string multicast;          // group to join; empty = none
+  std::string calibration;        // file, absolute after reading; empty = none
+  Pose mount = Pose::Identity();  // T_lidar: L -> boom
+  double min_range = 1.0;         // m
+  double max_range = 120.0;       // m
   Nanoseconds timeout = std::chrono::milliseconds(500);
   TimeSource time_source = TimeSource::receive;
   bool firing_correction = true;

@@ -20,8 +20,8 @@ struct JointRegister {
   RegisterType type = RegisterType::float32;
   double scale = 1.0;
   double bias = 0.0;
-  int sign = 1;           // +1 or -1
-  double min = -500.0;    // m or deg
+  int sign = 1;         // +1 or -1
+  double min = -500.0;  // m or deg
   double max = 500.0;
   double max_rate = 1.0;  // m/s or deg/s
 };

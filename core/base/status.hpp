@@ -21,14 +21,22 @@ enum class State : std::uint16_t {
 /// Lower-case word of a state, for logs.
 [[nodiscard]] constexpr const char* state_name(State state) {
   switch (state) {
-    case State::starting: return "starting";
-    case State::tracking: return "tracking";
-    case State::degraded: return "degraded";
-    case State::lost: return "lost";
-    case State::acquiring: return "acquiring";
-    case State::fault: return "fault";
-    case State::held: return "held";
-    case State::stopped: return "stopped";
+    case State::starting:
+      return "starting";
+    case State::tracking:
+      return "tracking";
+    case State::degraded:
+      return "degraded";
+    case State::lost:
+      return "lost";
+    case State::acquiring:
+      return "acquiring";
+    case State::fault:
+      return "fault";
+    case State::held:
+      return "held";
+    case State::stopped:
+      return "stopped";
   }
   return "unknown";
 }
@@ -37,18 +45,18 @@ enum class State : std::uint16_t {
 using Faults = std::uint16_t;
 
 namespace fault {
-inline constexpr Faults plc_link_lost = 1u << 0;        // event
+inline constexpr Faults plc_link_lost = 1u << 0;  // event
 inline constexpr Faults plc_stale = 1u << 1;
 inline constexpr Faults plc_value = 1u << 2;
 inline constexpr Faults lidar_silent = 1u << 3;
-inline constexpr Faults foreign_packets = 1u << 4;      // event
-inline constexpr Faults frame_incomplete = 1u << 5;     // event
+inline constexpr Faults foreign_packets = 1u << 4;   // event
+inline constexpr Faults frame_incomplete = 1u << 5;  // event
 inline constexpr Faults not_converged = 1u << 6;
 inline constexpr Faults few_matches = 1u << 7;
 inline constexpr Faults q1_high = 1u << 8;
 inline constexpr Faults unconstrained = 1u << 9;
-inline constexpr Faults implausible = 1u << 10;         // event
-inline constexpr Faults frame_dropped = 1u << 11;       // event
+inline constexpr Faults implausible = 1u << 10;    // event
+inline constexpr Faults frame_dropped = 1u << 11;  // event
 inline constexpr Faults clock = 1u << 12;
 inline constexpr Faults map_unusable = 1u << 13;
 inline constexpr Faults contradicted = 1u << 14;

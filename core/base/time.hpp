@@ -35,7 +35,9 @@ using WallTime = std::chrono::time_point<std::chrono::system_clock, Nanoseconds>
 
 /// Seconds as double: for rates and displays, not for storing times.
 [[nodiscard]] constexpr double to_seconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-9; }
-[[nodiscard]] constexpr double to_milliseconds(Nanoseconds d) { return static_cast<double>(d.count()) * 1e-6; }
+[[nodiscard]] constexpr double to_milliseconds(Nanoseconds d) {
+  return static_cast<double>(d.count()) * 1e-6;
+}
 /// From milliseconds as a configuration gives them. |ms| must be below 9.2e12 (292 years).
 [[nodiscard]] constexpr Nanoseconds nanoseconds_from_ms(double ms) {
   return Nanoseconds{static_cast<std::int64_t>(ms * 1e6)};

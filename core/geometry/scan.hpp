@@ -16,40 +16,40 @@ namespace hulltrack {
 
 /// One return in L. Its measuring time is its segment's time + dt_ns.
 struct LidarPoint {
-  float x, y, z;             // m
-  std::int32_t dt_ns;        // offset to the segment's reference time; may be negative
-  std::uint16_t intensity;   // vendor's reflectivity scale
-  std::uint8_t channel;      // 0-based laser (Ouster: pixel row)
-  std::uint8_t echo;         // 0 = the only or strongest return, 1 = a further one of the same firing
+  float x, y, z;            // m
+  std::int32_t dt_ns;       // offset to the segment's reference time; may be negative
+  std::uint16_t intensity;  // vendor's reflectivity scale
+  std::uint8_t channel;     // 0-based laser (Ouster: pixel row)
+  std::uint8_t echo;        // 0 = the only or strongest return, 1 = a further one of the same firing
 };
 
 /// The points of one datagram (or the part of it on one side of a frame boundary).
 struct ScanSegment {
-  MeasurementTime time;      // middle of the segment's firings; the joints are taken at this time
-  std::uint32_t first;       // index into Scan::points
+  MeasurementTime time;  // middle of the segment's firings; the joints are taken at this time
+  std::uint32_t first;   // index into Scan::points
   std::uint32_t count;
-  std::uint16_t lidar;       // index into the configuration's [[lidar]] list
+  std::uint16_t lidar;  // index into the configuration's [[lidar]] list
 };
 
 /// What the drivers saw of one LiDAR while the frame was collected.
 struct LidarFrameCounters {
-  std::uint32_t packets = 0;            // decoded datagrams that contributed
-  std::uint32_t packets_lost = 0;       // estimated from sequence, time stamps and azimuth
-  std::uint32_t packets_rejected = 0;   // wrong size, foreign sender, bad flag
-  std::uint32_t kernel_overflows = 0;   // SO_RXQ_OVFL increments
+  std::uint32_t packets = 0;           // decoded datagrams that contributed
+  std::uint32_t packets_lost = 0;      // estimated from sequence, time stamps and azimuth
+  std::uint32_t packets_rejected = 0;  // wrong size, foreign sender, bad flag
+  std::uint32_t kernel_overflows = 0;  // SO_RXQ_OVFL increments
   std::uint32_t points = 0;
 };
 
 struct Scan {
-  std::uint32_t frame_number = 0;       // from 0, +1 a frame, gaps where nothing arrived
-  MeasurementTime begin;                // first firing in the frame (period framing: start of period)
-  MeasurementTime end;                  // last firing in the frame (period framing: end of period)
-  MeasurementTime first_firing;         // earliest and latest firing really present
+  std::uint32_t frame_number = 0;  // from 0, +1 a frame, gaps where nothing arrived
+  MeasurementTime begin;           // first firing in the frame (period framing: start of period)
+  MeasurementTime end;             // last firing in the frame (period framing: end of period)
+  MeasurementTime first_firing;    // earliest and latest firing really present
   MeasurementTime last_firing;
-  SteadyTime last_received{};           // when the last datagram of the scan came in (zero in replay)
+  SteadyTime last_received{};  // when the last datagram of the scan came in (zero in replay)
   std::vector<LidarPoint> points;
   std::vector<ScanSegment> segments;
-  std::vector<LidarFrameCounters> lidars;   // one per configured LiDAR
+  std::vector<LidarFrameCounters> lidars;  // one per configured LiDAR
 
   [[nodiscard]] MeasurementTime mid_time() const { return begin + (end - begin) / 2; }
   void clear() {

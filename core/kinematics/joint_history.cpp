@@ -24,8 +24,9 @@ JointHistory::Answer JointHistory::at(MeasurementTime t) const {
   if (samples_.empty()) {
     return {Lookup::empty, {}};
   }
-  const auto after = std::lower_bound(samples_.begin(), samples_.end(), t,
-                                      [](const JointSample& s, MeasurementTime time) { return s.time < time; });
+  const auto after =
+      std::lower_bound(samples_.begin(), samples_.end(), t,
+                       [](const JointSample& s, MeasurementTime time) { return s.time < time; });
   if (after == samples_.end()) {
     return {Lookup::after_newest, {}};
   }

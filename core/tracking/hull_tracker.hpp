@@ -39,23 +39,23 @@ struct FrameInputs {
 /// What one frame came to, healthy or not.
 struct TrackResult {
   std::uint32_t frame = 0;
-  MeasurementTime time{};          // middle of the scan
+  MeasurementTime time{};  // middle of the scan
 
-  bool registered = false;         // everything below up to `metrics` is meaningful
-  Pose T_W_H = Pose::Identity();   // hull pose found by this frame's registration
+  bool registered = false;                                 // everything below up to `metrics` is meaningful
+  Pose T_W_H = Pose::Identity();                           // hull pose found by this frame's registration
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // T_W_H * p_ref - p_ref, m
   Eigen::Vector3d rpy = Eigen::Vector3d::Zero();           // of T_W_H, rad
   bool converged = false;
   int iterations = 0;
-  std::uint32_t matched = 0;       // points of the last ICP iteration
-  double sigma_translation = -1.0; // 1-sigma, largest principal axis, m; -1 = unknown
-  double sigma_rotation = -1.0;    // rad; -1 = unknown
-  DistanceMetrics metrics;         // metrics.valid tells whether there are any
+  std::uint32_t matched = 0;        // points of the last ICP iteration
+  double sigma_translation = -1.0;  // 1-sigma, largest principal axis, m; -1 = unknown
+  double sigma_rotation = -1.0;     // rad; -1 = unknown
+  DistanceMetrics metrics;          // metrics.valid tells whether there are any
 
-  State state = State::starting;   // starting/held/fault as far as the frame's inputs tell
-  bool health = false;             // true if and only if state == tracking
+  State state = State::starting;  // starting/held/fault as far as the frame's inputs tell
+  bool health = false;            // true if and only if state == tracking
   Faults faults = 0;
-  std::string reason;              // why health is 0, in plain words with figures; empty when healthy
+  std::string reason;  // why health is 0, in plain words with figures; empty when healthy
 };
 
 class HullTracker {

@@ -10,10 +10,10 @@
 namespace hulltrack {
 
 struct HullConfig {
-  Eigen::Vector3d reference_point = Eigen::Vector3d::Zero();  // in H, m
-  std::optional<Box> region;                                  // in W; empty = no crop
+  Eigen::Vector3d reference_point = Eigen::Vector3d::Zero();    // in H, m
+  std::optional<Box> region;                                    // in W; empty = no crop
   Box envelope{{-15.0F, -2.0F, -10.0F}, {15.0F, 2.0F, 10.0F}};  // displacements a berthed ship can have, m
-  double max_speed = 0.3;                                     // m/s
+  double max_speed = 0.3;                                       // m/s
 };
 
 enum class RegistrationMethod {
@@ -26,8 +26,8 @@ struct RegistrationConfig {
   double voxel_size = 0.5;                   // m
   double max_correspondence_distance = 0.3;  // m
   int max_iterations = 50;
-  double translation_epsilon = 0.001;        // m
-  double rotation_epsilon = radians(0.1);    // rad
+  double translation_epsilon = 0.001;      // m
+  double rotation_epsilon = radians(0.1);  // rad
   RegistrationMethod method = RegistrationMethod::automatic;
 };
 
@@ -39,11 +39,11 @@ enum class MetricsScope {
 };
 
 struct HealthConfig {
-  double q1_healthy = 0.12;      // m: at or below = tracking
-  double q1_lost = 0.25;         // m: above = lost
-  double metric_range = 25.0;    // m from the sensor
+  double q1_healthy = 0.12;    // m: at or below = tracking
+  double q1_lost = 0.25;       // m: above = lost
+  double metric_range = 25.0;  // m from the sensor
   int min_matched = 200;
-  int recover_frames = 5;        // good frames in a row before health returns
+  int recover_frames = 5;  // good frames in a row before health returns
   Nanoseconds max_age = std::chrono::milliseconds(500);
 };
 

@@ -54,10 +54,11 @@ TEST(RollPitchYaw, ComposesAsYawTimesPitchTimesRoll) {
   const Eigen::Matrix3d roll = rotation_from_rpy({radians(90.0), 0.0, 0.0});
   EXPECT_LT((roll * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
   const Eigen::Vector3d rpy(0.3, -0.7, 2.9);
-  EXPECT_LT((rotation_from_rpy(rpy) - yaw.transpose() * yaw * rotation_from_rpy({0, 0, rpy.z()}) *
-                                          rotation_from_rpy({0, rpy.y(), 0}) * rotation_from_rpy({rpy.x(), 0, 0}))
-                .norm(),
-            1e-12);
+  EXPECT_LT(
+      (rotation_from_rpy(rpy) - yaw.transpose() * yaw * rotation_from_rpy({0, 0, rpy.z()}) *
+                                    rotation_from_rpy({0, rpy.y(), 0}) * rotation_from_rpy({rpy.x(), 0, 0}))
+          .norm(),
+      1e-12);
 }
 
 TEST(RollPitchYaw, InvertsAwayFromTheSingularityAndStaysFiniteAtIt) {

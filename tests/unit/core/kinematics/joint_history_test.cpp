@@ -39,7 +39,8 @@ TEST(JointHistory, ABracketSpansAtMost250Milliseconds) {
   EXPECT_EQ(history.at(ms(125)).lookup, Lookup::ok);
   EXPECT_EQ(history.at(ms(300)).lookup, Lookup::gap);
   EXPECT_EQ(history.covers(ms(10), ms(250)), Lookup::ok);
-  EXPECT_EQ(history.covers(ms(10), ms(501)), Lookup::gap) << "a gap between two times that both have an answer";
+  EXPECT_EQ(history.covers(ms(10), ms(501)), Lookup::gap)
+      << "a gap between two times that both have an answer";
   EXPECT_EQ(history.covers(ms(10), ms(502)), Lookup::after_newest);
   EXPECT_EQ(history.covers(ms(-1), ms(250)), Lookup::before_oldest);
 }
