@@ -30,4 +30,13 @@ struct LidarConfig {
   std::vector<std::array<double, 6>> exclude;  // boxes in L: x0,y0,z0,x1,y1,z1, m
 };
 
+/// What ends a frame: a grid of equal periods, or the azimuth passing through zero.
+enum class Framing { period, revolution };
+
+/// How the packets of all LiDARs are cut into scans: framing and frame_rate_hz of [tracking].
+struct FramingConfig {
+  Framing framing = Framing::period;
+  double frame_rate_hz = 10.0;  // of the periods; with revolution framing the rate that is expected
+};
+
 }  // namespace hulltrack

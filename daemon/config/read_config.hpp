@@ -1,0 +1,35 @@
+// Reads the configuration: TOML text -> Config, or every problem there is with it.
+//
+// Nothing starts on a configuration with a problem. Cost: milliseconds, allocates. Pure but for the
+// file that read_config opens; never throws on any input.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/config/config.hpp"
+#include "daemon/config/problem.hpp"
+
+namespace hulltrack {
+
+struct ConfigReading {
+  std::optional<Config> config;   // present if and only if problems is empty
+  std::vector<Problem> problems;  // in order of their lines
+};
+
+/// `models`: every LiDAR model name of this build; a `model` outside it is a problem.
+[[nodiscard]] ConfigReading read_config(const std::filesystem::path& file,
+                                        const std::vector<std::string>& models);
+
+/// As read_config for text already in memory; `file` names it in messages, and relative paths in the
+/// text are relative to its folder.
+[[nodiscard]] ConfigReading parse_config(std::string_view text, const std::filesystem::path& file,
+                                         const std::vector<std::string>& models);
+
+/// The effective values of every key as TOML that reads back equal.
+[[nodiscard]] std::string print_config(const Config& config);
+
+}  // namespace hulltrack

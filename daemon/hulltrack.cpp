@@ -1,0 +1,47 @@
+// The main of `hulltrack`, the tool beside the service: picks the subcommand and turns failures into
+// one line and an exit code (0 done, 1 it failed, 2 wrong command line).
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "daemon/tools/tools.hpp"
+
+namespace hulltrack {
+namespace {
+
+/// "hulltrack", or "hulltrack decode" once a subcommand has been recognised.
+std::string program_name(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? "hulltrack" : "hulltrack " + chosen.front()->get_name();
+}
+
+void add_subcommands(CLI::App& app) { app.require_subcommand(1); }
+
+int run(int argc, char** argv) {
+  CLI::App app{"Tools around hulltrackd, the service that tracks a moored ship's hull for a ship loader."};
+  app.name("hulltrack");
+  app.set_version_flag("--version", "hulltrack " HULLTRACK_VERSION);
+  app.footer("Each subcommand explains itself: hulltrack SUBCOMMAND --help. Manual: hulltrack(1).");
+  add_subcommands(app);
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& wrong) {
+    const std::string name = program_name(app);
+    std::fprintf(stderr, "%s: %s\nTry: %s --help\n", name.c_str(), wrong.what(), name.c_str());
+    return kExitUsage;
+  } catch (const ToolError& failure) {
+    std::fprintf(stderr, "%s: %s\n", program_name(app).c_str(), failure.what());
+    return failure.exit_code();
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "%s: %s\n", program_name(app).c_str(), failure.what());
+    return kExitFailed;
+  }
+}
+
+}  // namespace
+}  // namespace hulltrack
+
+int main(int argc, char** argv) { return hulltrack::run(argc, argv); }
