@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/status.hpp"
+#include "core/filter/scan_filter.hpp"
 #include "core/geometry/scan.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/kinematics/joint_history.hpp"
@@ -20,14 +21,6 @@
 #include "core/tracking/tracker_config.hpp"
 
 namespace hulltrack {
-
-/// What the tracker has to know of one LiDAR.
-struct SensorConfig {
-  Pose mount = Pose::Identity();  // T_lidar
-  double min_range = 1.0;         // m
-  double max_range = 120.0;       // m
-  std::vector<Box> exclude;       // in L: the machine's own chute and boom
-};
 
 /// What surrounds one scan besides its points.
 struct FrameInputs {

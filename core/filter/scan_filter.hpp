@@ -1,0 +1,63 @@
+// Every return of a scan from its sensor's frame L to the world W, and which of them may be hull.
+//
+// Each segment is moved with the joints at its own time (one T_W_L a segment: the loader moves less
+// than 1 mm within a datagram). A return is a candidate if its range is within the sensor's limits,
+// no exclude box in L holds it and the region in W does. Frames L and W, metres.
+// Precondition: the joint history covers the scan (the caller asks covers() first); a segment that it
+// does not answer for, of an unknown LiDAR, or outside the point array is left out and counted.
+// NaN and infinite points are left out. Thread rule: one owner. Cost: one pass, no allocation once the
+// buffers have grown to the scan's size.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry/box.hpp"
+#include "core/geometry/cloud.hpp"
+#include "core/geometry/scan.hpp"
+#include "core/kinematics/joint_history.hpp"
+#include "core/kinematics/loader_kinematics.hpp"
+
+namespace hulltrack {
+
+/// What the tracker has to know of one LiDAR.
+struct SensorConfig {
+  Pose mount = Pose::Identity();  // T_lidar
+  double min_range = 1.0;         // m
+  double max_range = 120.0;       // m
+  std::vector<Box> exclude;       // in L: the machine's own chute and boom
+};
+
+/// A return with valid range, whether or not it may be hull.
+struct Return {
+  Point p_W;
+  std::uint16_t lidar;
+};
+
+struct FilteredScan {
+  std::vector<Return> returns;  // all of valid range: what the sensors really saw
+  Cloud hull_W;                 // the candidates for hull, full resolution
+  std::uint32_t segments_left_out = 0;
+};
+
+class ScanFilter {
+ public:
+  ScanFilter(const MachineConfig& machine, std::vector<SensorConfig> sensors, std::optional<Box> region_W);
+
+  /// `out` is replaced.
+  void run(const Scan& scan, const JointHistory& joints, FilteredScan& out) const;
+
+  [[nodiscard]] const std::vector<SensorConfig>& sensors() const { return sensors_; }
+  [[nodiscard]] const MachineConfig& machine() const { return machine_; }
+
+ private:
+  void run_segment(std::span<const LidarPoint> points, std::uint16_t lidar, const Pose& T_W_L,
+                   FilteredScan& out) const;
+
+  MachineConfig machine_;
+  std::vector<SensorConfig> sensors_;
+  std::optional<Box> region_W_;
+};
+
+}  // namespace hulltrack
