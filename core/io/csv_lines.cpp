@@ -1,0 +1,84 @@
+#include "core/io/csv_lines.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+namespace hulltrack {
+
+CsvLines::CsvLines(const std::filesystem::path& file) : name_(file.string()) {
+  errno = 0;
+  if (!std::filesystem::is_directory(file)) {
+    stream_.open(file);
+  } else {
+    errno = EISDIR;
+    stream_.setstate(std::ios::failbit);
+  }
+}
+
+Error CsvLines::error(const std::string& message) const {
+  return Error{name_ + ':' + std::to_string(line_) + ": " + message};
+}
+
+Result<bool> CsvLines::read_line() {
+  stream_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  const auto count = static_cast<std::size_t>(stream_.gcount());
+  if (stream_.bad()) {
+    return Error{name_ + ": cannot be read: " + std::strerror(errno)};
+  }
+  if (count == 0 && stream_.eof()) {
+    return false;
+  }
+  ++line_;
+  if (stream_.fail()) {
+    return error("the line is longer than " + std::to_string(kMaxLine - 2) +
+                 " characters; is this the right file?");
+  }
+  // gcount() includes the newline that was taken off, which only the last line can lack.
+  text_ = std::string_view(buffer_.data(), stream_.eof() ? count : count - 1);
+  if (text_.ends_with('\r')) {
+    text_.remove_suffix(1);
+  }
+  return true;
+}
+
+Result<void> CsvLines::expect_header(std::string_view header) {
+  if (!stream_) {
+    return Error{name_ + ": cannot be opened: " + std::strerror(errno)};
+  }
+  const auto more = read_line();
+  if (!more) {
+    return more.error();
+  }
+  if (!*more) {
+    return Error{name_ + ": is empty; its first line must be `" + std::string(header) + "`"};
+  }
+  if (text_ != header) {
+    return error("the first line must be `" + std::string(header) + "`, it is `" +
+                 std::string(text_.substr(0, 80)) + "`");
+  }
+  return {};
+}
+
+Result<bool> CsvLines::next(std::size_t field_count) {
+  auto more = read_line();
+  if (!more || !*more) {
+    return more;
+  }
+  fields_.clear();
+  std::string_view rest = text_;
+  while (true) {
+    const auto comma = rest.find(',');
+    fields_.push_back(rest.substr(0, comma));
+    if (comma == std::string_view::npos) {
+      break;
+    }
+    rest.remove_prefix(comma + 1);
+  }
+  if (fields_.size() != field_count) {
+    return error("has " + std::to_string(fields_.size()) + " fields, must have " +
+                 std::to_string(field_count) + (stream_.eof() ? "; is the file cut short?" : ""));
+  }
+  return true;
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,62 @@
+// Lines and fields of a small strict CSV: no quotes, no spaces, a fixed header.
+//
+// Used by the readers of this folder. Bounded: a line longer than kMaxLine is an error.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.hpp"
+
+namespace hulltrack {
+
+/// The whole field as a number of type T; nothing for rubbish, overflow, NaN or infinity.
+template <typename T>
+[[nodiscard]] std::optional<T> parse_number(std::string_view field) {
+  T value{};
+  const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (failure != std::errc{} || end != field.data() + field.size()) {
+    return std::nullopt;
+  }
+  if constexpr (std::is_floating_point_v<T>) {
+    if (!std::isfinite(value)) {
+      return std::nullopt;
+    }
+  }
+  return value;
+}
+
+class CsvLines {
+ public:
+  static constexpr std::size_t kMaxLine = 1024;
+
+  explicit CsvLines(const std::filesystem::path& file);
+  /// Reads the first line and compares it with `header`.
+  [[nodiscard]] Result<void> expect_header(std::string_view header);
+  /// Reads the next line into fields(); false at the end of the file.
+  [[nodiscard]] Result<bool> next(std::size_t field_count);
+  [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }
+  [[nodiscard]] int line() const { return line_; }
+  /// "FILE:LINE: message" about the line read last.
+  [[nodiscard]] Error error(const std::string& message) const;
+
+ private:
+  [[nodiscard]] Result<bool> read_line();
+
+  std::string name_;
+  std::ifstream stream_;
+  std::array<char, kMaxLine> buffer_{};
+  std::string_view text_;  // the line, without its end
+  std::vector<std::string_view> fields_;
+  int line_ = 0;
+};
+
+}  // namespace hulltrack
