@@ -14,35 +14,6 @@
 
 namespace hulltrack {
 
-/// Bits of the PLC's command word (ICD 2.1).
-inline constexpr std::uint16_t kCommandHold = 1u << 0;
-inline constexpr std::uint16_t kCommandReacquire = 1u << 1;
-
-/// Remembers the command word between frames, so that a re-acquire edge between two frames is not
-/// missed. Starts with the word 0.
-class CommandLatch {
- public:
-  /// A command word as read; true on a rising re-acquire edge.
-  bool read(std::uint16_t command) {
-    const bool edge = (command & ~command_ & kCommandReacquire) != 0;
-    command_ = command;
-    reacquire_ = reacquire_ || edge;
-    return edge;
-  }
-  [[nodiscard]] std::uint16_t command() const { return command_; }
-  [[nodiscard]] bool hold() const { return (command_ & kCommandHold) != 0; }
-  /// True once after each edge.
-  [[nodiscard]] bool take_reacquire() {
-    const bool taken = reacquire_;
-    reacquire_ = false;
-    return taken;
-  }
-
- private:
-  std::uint16_t command_ = 0;
-  bool reacquire_ = false;
-};
-
 /// The configuration's LiDARs in the tracker's terms, in the order of Scan::lidars.
 [[nodiscard]] std::vector<SensorConfig> sensor_configs(const std::vector<LidarConfig>& lidars);
 
