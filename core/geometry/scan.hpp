@@ -20,7 +20,7 @@ struct LidarPoint {
   std::int32_t dt_ns;       // offset to the segment's reference time; may be negative
   std::uint16_t intensity;  // vendor's reflectivity scale
   std::uint8_t channel;     // 0-based laser (Ouster: pixel row)
-  std::uint8_t echo;        // 0 = the only or strongest return, 1 = a further one of the same firing
+  std::uint8_t echo;        // 0 = the only or the last return, 1 = another one of the same firing
 };
 
 /// The points of one datagram (or the part of it on one side of a frame boundary).
@@ -33,11 +33,12 @@ struct ScanSegment {
 
 /// What the drivers saw of one LiDAR while the frame was collected.
 struct LidarFrameCounters {
-  std::uint32_t packets = 0;           // decoded datagrams that contributed
+  std::uint32_t packets = 0;           // decoded datagrams with a firing in the frame, returns or not
   std::uint32_t packets_lost = 0;      // estimated from sequence, time stamps and azimuth
   std::uint32_t packets_rejected = 0;  // wrong size, foreign sender, bad flag
   std::uint32_t kernel_overflows = 0;  // SO_RXQ_OVFL increments
   std::uint32_t points = 0;
+  std::uint32_t points_over_limit = 0;  // beyond the largest frame that is processed: dropped
 };
 
 struct Scan {
@@ -46,7 +47,7 @@ struct Scan {
   MeasurementTime end;             // last firing in the frame (period framing: end of period)
   MeasurementTime first_firing;    // earliest and latest firing really present
   MeasurementTime last_firing;
-  SteadyTime last_received{};  // when the last datagram of the scan came in (zero in replay)
+  SteadyTime last_received{};  // live, set by the receiver: when the scan was complete; replay: zero
   std::vector<LidarPoint> points;
   std::vector<ScanSegment> segments;
   std::vector<LidarFrameCounters> lidars;  // one per configured LiDAR

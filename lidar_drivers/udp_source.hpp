@@ -1,0 +1,79 @@
+// Live datagrams of one UDP port, each with its kernel receive stamp.
+//
+// Non-blocking: wait on fd() with epoll or poll, then call receive() until it returns nothing. Datagrams
+// from other senders than the LiDARs' are dropped here and counted. The kernel's stamp is converted to
+// the monotonic clock at once (receive_clock.hpp), so steps of the wall clock do not matter.
+// LiDARs that share a port share one source. Thread rule: one owner.
+#pragma once
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "lidar_drivers/datagram.hpp"
+#include "lidar_drivers/lidar_config.hpp"
+
+namespace hulltrack {
+
+struct UdpCounters {
+  std::uint64_t received = 0;          // datagrams handed out
+  std::uint64_t foreign = 0;           // from an address that is no LiDAR's: dropped
+  std::uint64_t kernel_overflows = 0;  // lost because the receive buffer was full (SO_RXQ_OVFL)
+  std::uint64_t truncated = 0;         // longer than a datagram can be read: dropped
+  std::uint64_t unstamped = 0;         // no kernel stamp: the time of reading was used
+};
+
+class UdpSource {
+ public:
+  /// One source for all `lidars`, which share bind address and port (see open_udp_sources). Joins their
+  /// multicast groups. Errors say which address and port, and what to do (port in use, address not here).
+  [[nodiscard]] static Result<UdpSource> open(std::span<const LidarConfig> lidars);
+
+  UdpSource(UdpSource&& other) noexcept;
+  UdpSource& operator=(UdpSource&& other) noexcept;
+  ~UdpSource();
+
+  [[nodiscard]] int fd() const { return fd_; }
+  /// The bound port: what the configuration says, or what the kernel chose for 0.
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+  /// Up to 64 datagrams, without waiting; empty when none is there. Valid until the next call. An error
+  /// means the socket is unusable.
+  [[nodiscard]] Result<std::span<const Datagram>> receive();
+
+  [[nodiscard]] const UdpCounters& counters() const { return counters_; }
+  /// "10.0.0.7:5000", the sender dropped most recently; empty when there was none.
+  [[nodiscard]] std::string last_foreign() const;
+  /// What is not as it should be although it works, such as a receive buffer smaller than asked for.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  struct Buffers;
+
+  explicit UdpSource(int fd);
+  void enlarge_receive_buffer();
+  [[nodiscard]] Result<void> bind_to(const LidarConfig& lidar);
+  [[nodiscard]] Result<void> join_group(const LidarConfig& lidar);
+  [[nodiscard]] bool accepts(std::uint32_t ip) const;
+
+  int fd_ = -1;
+  std::uint16_t port_ = 0;
+  std::vector<std::uint32_t> allowed_;  // host byte order; empty = any
+  UdpCounters counters_;
+  std::uint32_t last_overflow_ = 0;
+  std::uint32_t foreign_ip_ = 0;
+  std::uint16_t foreign_port_ = 0;
+  std::vector<std::string> warnings_;
+  std::unique_ptr<Buffers> buffers_;
+};
+
+/// One source for each distinct pair of bind address and port, in the order of the configuration.
+[[nodiscard]] Result<std::vector<UdpSource>> open_udp_sources(std::span<const LidarConfig> lidars);
+
+}  // namespace hulltrack
