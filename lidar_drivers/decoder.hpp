@@ -31,16 +31,16 @@ struct DecoderOptions {
 struct DecodedPacket {
   std::vector<LidarPoint> points;  // in wire order; no point without a return; dt_ns <= 0
   Nanoseconds duration{};          // from the first to the last firing
-  Nanoseconds interval{};          // from this last firing to that of the next datagram, when none is lost
+  Nanoseconds interval{};          // from this first firing to the next datagram's, when none is lost
   Nanoseconds sensor_time{};       // the sensor's own clock at the last firing, modulo Decoder::clock_wrap()
-  /// When the rotor passed zero azimuth: the first such moment in (-duration - interval, 0], measured as
-  /// dt of a point. A datagram that begins past zero has none; see `first_azimuth`.
-  std::optional<Nanoseconds> zero_crossing;
+  std::optional<Nanoseconds>
+      zero_crossing;           // when the rotor passed zero azimuth, if it did: as dt of a point
   double first_azimuth = 0.0;  // rotor, rad, [0, 2 pi), at the first firing, clockwise seen from above
   double last_azimuth = 0.0;   // the same at the last firing
   double rotation_rate = 0.0;  // rad/s, >= 0
   ReturnMode return_mode = ReturnMode::unknown;
-  bool field_of_view_cut = false;  // the azimuth jumps inside the datagram: the sensor leaves sectors out
+  /// Where a sector begins that the sensor leaves out: rad, last azimuth before a jump inside the datagram.
+  std::optional<double> cut_azimuth;
 };
 
 enum class DecodeStatus : std::uint8_t {

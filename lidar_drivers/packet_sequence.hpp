@@ -45,12 +45,12 @@ class PacketSequence {
   std::array<std::size_t, 32> hashes_{};
   std::size_t hash_count_ = 0;
   bool started_ = false;
-  Nanoseconds newest_sensor_time_{};
+  Nanoseconds newest_sensor_time_{};  // last firing
+  Nanoseconds newest_first_{};        // first firing on the sensor's clock
   Nanoseconds newest_interval_{};
   MeasurementTime newest_received_{};
-  double newest_azimuth_ = 0.0;
-  double newest_rate_ = 0.0;
-  bool field_of_view_cut_ = false;
+  double newest_azimuth_ = 0.0;  // rad, at the newest's last firing
+  std::optional<double> cut_azimuth_;
 };
 
 }  // namespace hulltrack

@@ -42,10 +42,11 @@ class PcapWriter {
   };
   PcapWriter(std::unique_ptr<std::FILE, Close> file, std::filesystem::path path)
       : file_(std::move(file)), path_(std::move(path)) {}
-  [[nodiscard]] Error failure() const;
+  [[nodiscard]] Error failure();
 
   std::unique_ptr<std::FILE, Close> file_;
   std::filesystem::path path_;
+  int error_ = 0;  // errno of the first failure
 };
 
 }  // namespace hulltrack
