@@ -1,0 +1,57 @@
+// Which target point is nearest to each source point, while the source moves by ever smaller steps?
+//
+// The answers are those of a fresh search, bit for bit, but most are had without one. A search brings
+// the nearest few target points and a radius within which there are no others. When the source point has
+// moved by m since, all others are at least (radius - m) away (triangle inequality): if one of the few is
+// nearer than that, it is the nearest of all; and if (radius - m) reaches the gate, there is no other.
+// Frames: source in its own, target in the tree's; metres. No failure; points that are not finite have no
+// partner. Thread rule: one owner; scratch memory is kept. Cost: 180 bytes a source point.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/cloud.hpp"
+#include "core/geometry/se3.hpp"
+#include "core/search/kdtree.hpp"
+
+namespace hulltrack {
+
+/// A source point at its present place and the target point nearest to it.
+struct Correspondence {
+  Eigen::Vector3d source;  // in the target's frame, m
+  Eigen::Vector3d target;  // m
+  double distance;         // m, as the search found it: in float
+};
+
+class CorrespondenceCache {
+ public:
+  /// `gate`: the largest distance of partners (exclusive), m, > 0.
+  explicit CorrespondenceCache(double gate) : gate_(static_cast<float>(gate)) {}
+
+  /// Starts anew. Both must outlive the calls of find().
+  void reset(std::span<const Point> source, const KdTree& target);
+
+  /// The pairs within the gate with the source at T_target_source (finite), in the order of the source.
+  /// The span lives until the next call.
+  [[nodiscard]] std::span<const Correspondence> find(const Pose& T_target_source);
+
+  /// Searches made in the tree since reset().
+  [[nodiscard]] std::size_t searches() const { return searches_; }
+
+ private:
+  struct Entry {
+    Neighbourhood near;
+    Point searched_at;
+  };
+
+  float gate_;
+  std::span<const Point> source_;
+  const KdTree* target_ = nullptr;
+  std::vector<Entry> entries_;
+  std::vector<Correspondence> pairs_;
+  std::size_t searches_ = 0;
+};
+
+}  // namespace hulltrack

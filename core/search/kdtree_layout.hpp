@@ -1,0 +1,43 @@
+// How the kd-tree lies in memory: wide nodes of tight boxes over full leaves, both in SIMD order.
+//
+// A node keeps the boxes of up to 8 children side by side, so that one vector operation a plane tests
+// all of them; siblings are contiguous, so that one index addresses them. All leaves lie at the same
+// depth and hold up to 32 points. Unused lanes are at infinity and never match.
+// Internal to core/search. Immutable once built; see kdtree_build.hpp and kdtree_query.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hulltrack::kdtree {
+
+inline constexpr std::size_t kFanOut = 8;
+inline constexpr std::size_t kLeafSize = 32;
+
+/// Set in Layout::first_child when the children are leaves.
+inline constexpr std::uint32_t kLeafFlag = 0x80000000U;
+
+/// 2^31 leaves need 11 levels of 8; a node leaves at most 7 siblings of its successor on the stack.
+inline constexpr std::size_t kMaxHeight = 11;
+
+struct alignas(64) Node {
+  float min_x[kFanOut], max_x[kFanOut];
+  float min_y[kFanOut], max_y[kFanOut];
+  float min_z[kFanOut], max_z[kFanOut];
+};
+
+struct alignas(64) Leaf {
+  float x[kLeafSize], y[kLeafSize], z[kLeafSize];
+};
+
+/// Node 0 is the root; no nodes = empty tree. A slot is leaf * kLeafSize + position in the leaf.
+struct Layout {
+  std::vector<Node> nodes;
+  std::vector<std::uint32_t> first_child;  // per node: its first child's index, with kLeafFlag for leaves
+  std::vector<Leaf> leaves;
+  std::vector<std::uint32_t> index;  // per slot: index into the cloud
+  std::size_t size = 0;              // points
+};
+
+}  // namespace hulltrack::kdtree

@@ -1,0 +1,44 @@
+// The searches of the kd-tree, compiled once for every instruction set that they exist for.
+//
+// Every set gives the same bits: the same float operations in the same order, no fused multiply-add.
+// A point's squared distance is (dx * dx + dy * dy) + dz * dz in float; a box's distance is rounded by the
+// same operations and so never exceeds that of a point inside it, which makes pruning exact.
+// Internal to core/search. Thread rule: pure functions on an immutable layout. No failure.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/geometry/cloud.hpp"
+#include "core/search/kdtree_layout.hpp"
+
+namespace hulltrack::kdtree {
+
+/// A point found: where it stands in the layout, its squared distance in m^2.
+struct Hit {
+  std::uint32_t slot;
+  float squared_distance;
+};
+
+struct Kernels {
+  const char* name;
+
+  /// The nearest point with squared distance <= limit into `hit`; false if there is none.
+  bool (*nearest)(const Layout& layout, const Point& query, float limit, Hit& hit);
+
+  /// The nearest hits.size() points with squared distance <= limit, nearest first, ties by index; returns
+  /// how many there are.
+  std::size_t (*nearest_k)(const Layout& layout, const Point& query, float limit, std::span<Hit> hits);
+};
+
+[[nodiscard]] const Kernels& sse2_kernels();
+
+/// Must only be called into where avx2_available().
+[[nodiscard]] const Kernels& avx2_kernels();
+[[nodiscard]] bool avx2_available();
+
+/// The fastest kernels that this machine can run.
+[[nodiscard]] const Kernels& best_kernels();
+
+}  // namespace hulltrack::kdtree

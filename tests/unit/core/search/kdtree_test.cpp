@@ -1,0 +1,202 @@
+#include "core/search/kdtree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "core/search/kdtree_build.hpp"
+#include "core/search/kdtree_query.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+float squared_distance(const Point& a, const Point& b) {
+  const Point d = a - b;
+  return (d.x() * d.x() + d.y() * d.y()) + d.z() * d.z();
+}
+
+// All points with distance < radius in the order that the tree promises.
+std::vector<Neighbour> brute_force(const Cloud& cloud, const Point& query, float radius) {
+  std::vector<Neighbour> found;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const float d2 = squared_distance(cloud[i], query);
+    if (d2 < radius * radius) {
+      found.push_back({i, d2});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.squared_distance < b.squared_distance; });
+  return found;
+}
+
+Cloud random_cloud(std::size_t size, const Point& extent, unsigned seed) {
+  std::mt19937 rng(seed);
+  std::uniform_real_distribution<float> u(-0.5F, 0.5F);
+  Cloud cloud(size);
+  for (Point& p : cloud) {
+    p = Point(u(rng), u(rng), u(rng)).cwiseProduct(extent);
+  }
+  return cloud;
+}
+
+// Walls and decks on a grid: many equal coordinates and equal distances.
+Cloud grid_cloud(std::size_t size, unsigned seed) {
+  Cloud cloud = random_cloud(size, Point(12.0F, 8.0F, 3.0F), seed);
+  for (Point& p : cloud) {
+    p = (p * 4.0F).array().round().matrix() / 4.0F;
+  }
+  return cloud;
+}
+
+void expect_equals_brute_force(const Cloud& cloud, const Cloud& queries) {
+  const KdTree tree(cloud);
+  std::vector<Neighbour> few;
+  Neighbourhood near;
+  for (const Point& q : queries) {
+    for (const float radius : {0.05F, 0.3F, 2.0F, kInfinity}) {
+      const std::vector<Neighbour> expected = brute_force(cloud, q, radius);
+      const std::optional<Neighbour> nearest = tree.nearest(q, radius);
+      ASSERT_EQ(nearest.has_value(), !expected.empty());
+      if (nearest) {
+        ASSERT_EQ(nearest->index, expected.front().index);
+        ASSERT_EQ(nearest->squared_distance, expected.front().squared_distance);
+      }
+      for (const std::size_t k : {std::size_t{1}, std::size_t{5}, std::size_t{40}}) {
+        tree.nearest_k(q, k, radius, few);
+        ASSERT_EQ(few.size(), std::min(k, expected.size()));
+        for (std::size_t i = 0; i < few.size(); ++i) {
+          ASSERT_EQ(few[i].index, expected[i].index);
+          ASSERT_EQ(few[i].squared_distance, expected[i].squared_distance);
+        }
+      }
+      tree.neighbourhood(q, radius, near);
+      ASSERT_EQ(near.count, std::min(Neighbourhood::kCapacity, expected.size()));
+      for (std::size_t i = 0; i < near.count; ++i) {
+        ASSERT_EQ(near.index[i], expected[i].index);
+        ASSERT_EQ(Point(near.x[i], near.y[i], near.z[i]), cloud[near.index[i]]);
+      }
+      const bool full = near.count == Neighbourhood::kCapacity;
+      ASSERT_EQ(near.clear_radius, full ? std::sqrt(expected[near.count - 1].squared_distance) : radius);
+    }
+  }
+}
+
+TEST(KdTree, NearestDistanceEqualsBruteForce) {
+  unsigned seed = 1;
+  for (const std::size_t size : {1U, 2U, 31U, 32U, 33U, 256U, 257U, 2100U, 20000U}) {
+    const Cloud cloud = random_cloud(size, Point(10.0F, 4.0F, 2.0F), ++seed);
+    expect_equals_brute_force(cloud, random_cloud(60, Point(12.0F, 6.0F, 4.0F), ++seed));
+  }
+}
+
+TEST(KdTree, EqualDistancesGiveTheLowestIndex) {
+  for (const std::size_t size : {100U, 9000U}) {
+    expect_equals_brute_force(grid_cloud(size, 5), grid_cloud(60, 6));
+  }
+  expect_equals_brute_force(Cloud(1000, Point(1.0F, 2.0F, 3.0F)),
+                            random_cloud(10, Point(4.0F, 4.0F, 4.0F), 7));
+}
+
+TEST(KdTree, HandlesCloudsOnALineAndOnAPlane) {
+  for (const Point& extent :
+       {Point(50.0F, 0.0F, 0.0F), Point(0.0F, 9.0F, 9.0F), Point(1e-30F, 1e-38F, 0.0F)}) {
+    expect_equals_brute_force(random_cloud(3000, extent, 8),
+                              random_cloud(30, extent + Point(1.0F, 1.0F, 1.0F), 9));
+  }
+}
+
+TEST(KdTree, FindsPointsFarFromTheOrigin) {
+  Cloud cloud = random_cloud(5000, Point(40.0F, 20.0F, 5.0F), 10);
+  Cloud queries = random_cloud(40, Point(40.0F, 20.0F, 5.0F), 11);
+  for (Cloud* c : {&cloud, &queries}) {
+    for (Point& p : *c) {
+      p += Point(4.0e5F, -3.0e6F, 100.0F);
+    }
+  }
+  expect_equals_brute_force(cloud, queries);
+}
+
+TEST(KdTree, SurvivesCoordinatesThatOverflowWhenSquared) {
+  const float huge = std::numeric_limits<float>::max();
+  Cloud cloud = random_cloud(500, Point(huge, huge, huge), 12);
+  cloud.emplace_back(huge, -huge, huge);
+  cloud.emplace_back(-huge, huge, -huge);
+  cloud.emplace_back(0.5F, 0.0F, 0.0F);
+  expect_equals_brute_force(cloud, {Point::Zero(), Point(huge, -huge, huge), Point(1.0F, 1.0F, 1.0F)});
+}
+
+TEST(KdTree, LeavesOutPointsThatAreNotFiniteAndKeepsIndices) {
+  Cloud cloud = random_cloud(300, Point(2.0F, 2.0F, 2.0F), 13);
+  for (std::size_t i = 0; i < cloud.size(); i += 3) {
+    cloud[i][static_cast<Eigen::Index>(i % 3)] = i % 2 == 0 ? kNan : kInfinity;
+  }
+  EXPECT_EQ(KdTree(cloud).size(), 200U);
+  expect_equals_brute_force(cloud, random_cloud(50, Point(3.0F, 3.0F, 3.0F), 14));
+}
+
+TEST(KdTree, AnswersNothingWhereNothingCanBe) {
+  const Cloud all_nan(40, Point(kNan, 0.0F, 0.0F));
+  const Cloud one{Point::Zero()};
+  std::vector<Neighbour> few{{1, 1.0F}};
+  for (const Cloud& cloud : {Cloud{}, all_nan}) {
+    const KdTree tree(cloud);
+    EXPECT_EQ(tree.size(), 0U);
+    EXPECT_FALSE(tree.nearest(Point::Zero(), kInfinity));
+    tree.nearest_k(Point::Zero(), 3, kInfinity, few);
+    EXPECT_TRUE(few.empty());
+  }
+  const KdTree tree(one);
+  for (const Point& q :
+       {Point(kNan, 0.0F, 0.0F), Point(0.0F, kInfinity, 0.0F), Point(0.0F, 0.0F, -kInfinity)}) {
+    EXPECT_FALSE(tree.nearest(q, kInfinity));
+  }
+  for (const float radius : {0.0F, -1.0F, kNan}) {
+    EXPECT_FALSE(tree.nearest(Point::Zero(), radius));
+  }
+  EXPECT_FALSE(tree.nearest(Point(0.3F, 0.0F, 0.0F), 0.3F)) << "the radius is exclusive";
+}
+
+TEST(KdTree, EveryInstructionSetGivesTheSameBits) {
+  if (!kdtree::avx2_available()) {
+    GTEST_SKIP() << "this processor has no AVX2 to compare with";
+  }
+  const kdtree::Layout layout = kdtree::build(grid_cloud(30000, 15));
+  std::array<kdtree::Hit, 8> a_few{};
+  std::array<kdtree::Hit, 8> b_few{};
+  for (const Point& q : random_cloud(3000, Point(14.0F, 10.0F, 5.0F), 16)) {
+    kdtree::Hit a{};
+    kdtree::Hit b{};
+    ASSERT_EQ(kdtree::sse2_kernels().nearest(layout, q, 0.25F, a),
+              kdtree::avx2_kernels().nearest(layout, q, 0.25F, b));
+    ASSERT_EQ(a.slot, b.slot);
+    ASSERT_EQ(a.squared_distance, b.squared_distance);
+    const std::size_t count = kdtree::sse2_kernels().nearest_k(layout, q, 0.25F, a_few);
+    ASSERT_EQ(count, kdtree::avx2_kernels().nearest_k(layout, q, 0.25F, b_few));
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(a_few[i].slot, b_few[i].slot);
+      ASSERT_EQ(a_few[i].squared_distance, b_few[i].squared_distance);
+    }
+  }
+}
+
+TEST(KdTree, LeavesAreFullAndHoldEveryPointOnce) {
+  for (const std::size_t size : {1U, 40U, 5000U, 70000U}) {
+    const kdtree::Layout layout = kdtree::build(random_cloud(size, Point(30.0F, 20.0F, 1.0F), 17));
+    EXPECT_EQ(layout.leaves.size(), (size + kdtree::kLeafSize - 1) / kdtree::kLeafSize);
+    std::vector<int> seen(size, 0);
+    for (const std::uint32_t index : layout.index) {
+      if (index != std::numeric_limits<std::uint32_t>::max()) {
+        ++seen.at(index);
+      }
+    }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(size));
+  }
+}
+
+}  // namespace
+}  // namespace hulltrack
