@@ -45,11 +45,11 @@ class PacketSequence {
   std::array<std::size_t, 32> hashes_{};
   std::size_t hash_count_ = 0;
   bool started_ = false;
-  Nanoseconds newest_sensor_time_{};  // last firing
-  Nanoseconds newest_first_{};        // first firing on the sensor's clock
+  Nanoseconds newest_sensor_time_{};
+  Nanoseconds newest_duration_{};
   Nanoseconds newest_interval_{};
   MeasurementTime newest_received_{};
-  double newest_azimuth_ = 0.0;  // rad, at the newest's last firing
+  double newest_azimuth_ = 0.0;  // rad, at the last firing
   std::optional<double> cut_azimuth_;
 };
 

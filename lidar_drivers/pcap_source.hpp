@@ -15,6 +15,8 @@
 #include <string>
 
 #include "core/base/result.hpp"
+#include "lidar_drivers/bytes.hpp"
+#include "lidar_drivers/capture_frame.hpp"
 #include "lidar_drivers/datagram.hpp"
 #include "lidar_drivers/ipv4_reassembly.hpp"
 
@@ -65,15 +67,13 @@ class PcapSource {
   struct Close {
     void operator()(::pcap* handle) const;
   };
-  PcapSource(std::unique_ptr<::pcap, Close> handle, int link_type, std::string name,
+  PcapSource(std::unique_ptr<::pcap, Close> handle, LinkType link_type, std::string name,
              const PcapFilter& filter);
-  [[nodiscard]] bool read_record(std::span<const std::uint8_t> captured, std::uint32_t length, WallTime stamp,
-                                 Datagram& out);
-  [[nodiscard]] bool read_udp(std::span<const std::uint8_t> ip_payload, std::uint32_t source_ip,
-                              Datagram& out);
+  [[nodiscard]] bool read_record(Bytes captured, std::uint32_t length, WallTime stamp, Datagram& out);
+  [[nodiscard]] bool read_udp(Bytes ip_payload, std::uint32_t source_ip, Datagram& out);
 
   std::unique_ptr<::pcap, Close> handle_;
-  int link_type_;
+  LinkType link_type_;
   std::string name_;
   PcapFilter filter_;
   PcapCounters counters_;
