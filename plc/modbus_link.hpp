@@ -34,7 +34,7 @@ enum class LinkOutcome {
 struct LinkResult {
   LinkOutcome outcome = LinkOutcome::waiting;
   int exception = 0;       // Modbus exception code with LinkOutcome::exception, otherwise 0
-  std::string message;     // plain words; empty with ok and waiting
+  std::string message{};   // plain words; empty with ok and waiting
   SteadyTime requested{};  // just before the request was sent; meaningful with ok and exception
   SteadyTime answered{};   // just after the reply was complete
 
@@ -69,7 +69,6 @@ class ModbusLink {
   [[nodiscard]] bool connected() const;
   /// Connections made so far: grows by one with every reconnect.
   [[nodiscard]] std::uint64_t connections() const;
-  void close();
 
  private:
   struct Impl;

@@ -1,14 +1,17 @@
 // The service's view of the PLC: joints in, write block out, over one Modbus link.
 //
-// Units as in the registers. poll() and write() each return within one response timeout and share one
-// connection; after an error the next of them reconnects (see modbus_link.hpp). Judging the values and
-// the heartbeat's age is the caller's. Failure: an outcome, never an exception.
+// Units as in the registers. Each request takes at most one response timeout: one in poll(), one in
+// write(), where once a second a read-back precedes it. They share one connection; after an error the
+// next of them reconnects (see modbus_link.hpp). Judging the values and the heartbeat's age is the
+// caller's. Failure: an outcome, never an exception.
 // Thread rule: one thread uses it; it has none of its own. Cost: one round trip, and a second one in
 // one write a second.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "plc/modbus_link.hpp"
 #include "plc/plc_config.hpp"
@@ -20,10 +23,10 @@ namespace hulltrack {
 /// One read of the PLC's block.
 struct PlcPoll {
   LinkOutcome outcome = LinkOutcome::waiting;
-  int exception = 0;    // Modbus exception code
-  std::string message;  // plain words; empty with ok and waiting
-  PlcReading reading;   // meaningful with ok; drop the joints when reading.torn
-  bool fresh = false;   // ok, not torn, and the heartbeat moved since the last ok poll (or there is none)
+  int exception = 0;      // Modbus exception code
+  std::string message{};  // plain words; empty with ok and waiting
+  PlcReading reading{};   // meaningful with ok; drop the joints when reading.torn
+  bool fresh = false;     // ok, not torn, and the heartbeat moved since the last ok poll (or there is none)
   SteadyTime requested{};
   SteadyTime answered{};
 
@@ -43,9 +46,9 @@ enum class ReadBack {
 struct PlcWrite {
   LinkOutcome outcome = LinkOutcome::waiting;
   int exception = 0;
-  std::string message;
+  std::string message{};
   ReadBack read_back = ReadBack::not_due;
-  std::string read_back_message;  // with overwritten and unreadable
+  std::string read_back_message{};  // with overwritten and unreadable
   SteadyTime requested{};
   SteadyTime answered{};
 
@@ -69,7 +72,7 @@ class PlcClient {
   [[nodiscard]] std::uint64_t connections() const { return link_.connections(); }
 
  private:
-  void read_back(PlcWrite& result);
+  LinkResult read_back(PlcWrite& write);
 
   PlcConfig config_;
   ModbusLink::Clock now_;

@@ -52,8 +52,8 @@ struct PlcConfig {
   Nanoseconds response_timeout = std::chrono::milliseconds(100);
   Nanoseconds heartbeat_timeout = std::chrono::milliseconds(500);  // 0 = no heartbeat register
   Nanoseconds latency{0};
-  PlcReadConfig read;
-  PlcWriteConfig write;
+  PlcReadConfig read{};
+  PlcWriteConfig write{};
 };
 
 }  // namespace hulltrack

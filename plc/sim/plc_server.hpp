@@ -25,8 +25,9 @@ namespace hulltrack::sim {
 struct PlcServerConfig {
   std::string bind = "127.0.0.1";  // IPv4 literal
   std::uint16_t port = 0;          // 0 = any free port, see PlcServer::port()
-  PlcReadConfig read;
-  PlcWriteConfig write;
+  PlcReadConfig read{};
+  PlcWriteConfig write{};
+  Nanoseconds dribble = std::chrono::milliseconds(20);  // between the bytes of a dribbled reply
 };
 
 enum class PlcFault {
@@ -42,7 +43,7 @@ enum class PlcFault {
   wrong_transaction,  // another request's transaction id
   duplicate_reply,    // sent twice
   truncated_reply,    // its first half
-  dribbled_reply,     // byte by byte, 20 ms apart
+  dribbled_reply,     // byte by byte, PlcServerConfig::dribble apart
   illegal_function,   // exception 01
   illegal_address,    // exception 02
   illegal_value,      // exception 03
@@ -58,7 +59,7 @@ enum class PlcFault {
 
 /// One FC 16 request that covered the whole write block.
 struct PlcWriteRecord {
-  WriteBlock block;
+  WriteBlock block{};
   WriteRegisters registers{};
   SteadyTime at{};           // when the request was complete
   std::uint64_t number = 0;  // 1 for the first
@@ -96,7 +97,7 @@ class PlcServer {
   [[nodiscard]] std::optional<PlcWriteRecord> last_write() const;
   /// Waits until `number` writes have come; false after `limit`.
   [[nodiscard]] bool wait_for_writes(std::uint64_t number, Nanoseconds limit) const;
-  /// Called on the server's thread for each write, before its reply is sent; must not call set_fault().
+  /// Called on the server's thread for each write, before its reply is sent; it must not call the server.
   void on_write(std::function<void(const PlcWriteRecord&)> callback);
 
  private:
