@@ -1,12 +1,16 @@
 // The distance metrics of ICD 3: from map points to their nearest neighbours in the aligned scan.
+//
+// Metres. The scan is taken at full resolution, after region and exclude boxes. Pure but for the scratch that
+// the caller lends. Failure: no distance gives valid = false. Cost: one search a point, one partial sort.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace hulltrack {
 
 struct DistanceMetrics {
-  bool valid = false;        // false: no map point could be expected in view
+  bool valid = false;        // false: no map point could be expected in view, or the scan was empty
   double q1 = 0.0;           // 25th percentile, m
   double mean = 0.0;         // m
   double median = 0.0;       // m
@@ -14,5 +18,9 @@ struct DistanceMetrics {
   double rms = 0.0;          // m
   std::uint32_t points = 0;  // map points that the figures stand on
 };
+
+/// Percentiles interpolate linearly between order statistics: rank p (n - 1), counted from 0.
+/// `distances` (finite, m) is reordered.
+[[nodiscard]] DistanceMetrics summarise_distances(std::vector<double>& distances);
 
 }  // namespace hulltrack

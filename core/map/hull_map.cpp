@@ -1,0 +1,24 @@
+#include "core/map/hull_map.hpp"
+
+#include "core/filter/voxel_filter.hpp"
+#include "core/map/surfels.hpp"
+
+namespace hulltrack {
+namespace {
+
+Cloud thinned(const Cloud& cloud, float voxel) {
+  Cloud out;
+  VoxelFilter(voxel).filter(cloud, out);
+  return out;
+}
+
+}  // namespace
+
+HullMap::HullMap(Cloud cloud_H)
+    : cloud_H_(std::move(cloud_H)),
+      tree_(cloud_H_),
+      subset_H_(thinned(cloud_H_, kSubsetVoxel)),
+      surfels_(compute_surfels(subset_H_, cloud_H_, tree_)),
+      occluders_H_(thinned(cloud_H_, kOccluderVoxel)) {}
+
+}  // namespace hulltrack

@@ -1,0 +1,38 @@
+// A point of the map's fixed subset with what its surroundings look like.
+//
+// Frame H, metres. The normal's sign is arbitrary. Plain values.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/geometry/cloud.hpp"
+
+namespace hulltrack {
+
+/// Which way a surface faces in H: within 32 deg of an axis (|n.e| > 0.85), or none of them.
+enum class SurfaceClass : std::uint8_t { transverse, longitudinal, horizontal, other };  // X, Y, Z
+inline constexpr std::size_t kSurfaceClasses = 3;                                        // without `other`
+
+[[nodiscard]] constexpr const char* surface_class_name(SurfaceClass c) {
+  switch (c) {
+    case SurfaceClass::transverse:
+      return "transverse";
+    case SurfaceClass::longitudinal:
+      return "longitudinal";
+    case SurfaceClass::horizontal:
+      return "horizontal";
+    case SurfaceClass::other:
+      break;
+  }
+  return "other";
+}
+
+struct Surfel {
+  Point normal_H = Point::UnitZ();
+  SurfaceClass surface = SurfaceClass::other;
+  /// The map is a plane all around the point: the normal can be trusted and no edge is near.
+  bool planar = false;
+};
+
+}  // namespace hulltrack

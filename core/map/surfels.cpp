@@ -1,0 +1,61 @@
+#include "core/map/surfels.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace hulltrack {
+namespace {
+
+constexpr std::size_t kFewestNeighbours = 8;
+constexpr double kFlat = 0.025;        // m, RMS distance from the plane: map noise and voxel size together
+constexpr double kNarrow = 0.08;       // m, RMS spread across: half of a full disc's radius / 2 = 0.15
+constexpr double kOffCentre = 0.06;    // m; a half disc's centroid lies 4 r / (3 pi) = 0.13 m aside
+constexpr float kClassCosine = 0.85F;  // 31.8 deg
+
+SurfaceClass classify(const Point& n) {
+  for (std::size_t axis = 0; axis < kSurfaceClasses; ++axis) {
+    if (std::abs(n[static_cast<Eigen::Index>(axis)]) > kClassCosine) {
+      return static_cast<SurfaceClass>(axis);
+    }
+  }
+  return SurfaceClass::other;
+}
+
+Surfel surfel_of(const Point& p, const std::vector<Neighbour>& neighbours, const Cloud& cloud) {
+  if (neighbours.size() < kFewestNeighbours) {
+    return {};
+  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Neighbour& neighbour : neighbours) {
+    const Eigen::Vector3d d = (cloud[neighbour.index] - p).cast<double>();
+    sum += d;
+    squares += d * d.transpose();
+  }
+  const double n = static_cast<double>(neighbours.size());
+  const Eigen::Vector3d centroid = sum / n;
+  const Eigen::Matrix3d covariance = squares / n - centroid * centroid.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(covariance);
+  const auto spread = [&solver](int i) { return std::sqrt(std::max(0.0, solver.eigenvalues()[i])); };
+  Surfel surfel;
+  surfel.normal_H = solver.eigenvectors().col(0).cast<float>();
+  surfel.surface = classify(surfel.normal_H);
+  surfel.planar = spread(0) < kFlat && spread(1) > kNarrow && centroid.norm() < kOffCentre;
+  return surfel;
+}
+
+}  // namespace
+
+std::vector<Surfel> compute_surfels(const Cloud& points_H, const Cloud& cloud_H, const KdTree& map) {
+  std::vector<Surfel> surfels;
+  surfels.reserve(points_H.size());
+  std::vector<Neighbour> neighbours;
+  for (const Point& p : points_H) {
+    map.nearest_k(p, kSurfelNeighbours, kSurfelRadius, neighbours);
+    surfels.push_back(surfel_of(p, neighbours, cloud_H));
+  }
+  return surfels;
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,167 @@
+#include "core/tracking/health.hpp"
+
+#include <algorithm>
+
+#include "core/base/text.hpp"
+
+namespace hulltrack {
+namespace {
+
+// Two healthy poses are each off by less than 10 cm and 0.3 deg; usually by a third of it. A hull that obeys
+// max_speed can show this much beyond max_speed * dt before a jump is no longer explained by errors.
+constexpr double kJumpNoise = 0.10;  // m: 3 sigma of the difference of two poses of 2.4 cm
+const double kTurnNoise = radians(0.3);
+// A moored ship rolls by a degree in a quarter of 8 s.
+const double kTurnRate = radians(1.0);  // 1/s
+
+/// What the checks found: the worst state they leave, all fault bits, the first reason of the worst.
+struct Findings {
+  State state = State::tracking;
+  Faults faults = 0;
+  std::string reason;
+
+  void add(State at_best, Faults bits, std::string why) {
+    faults |= bits;
+    if (at_best > state) {  // tracking 1 < degraded 2 < lost 3
+      state = at_best;
+      reason = std::move(why);
+    }
+  }
+};
+
+void check_registration(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+  const auto least = static_cast<std::uint32_t>(std::max(0, limits.health.min_matched));
+  if (!e.registered || e.matched < least) {
+    findings.add(State::lost, fault::few_matches,
+                 format_text("%u matched points, min_matched is %u", e.matched, least));
+  }
+  if (!e.converged) {
+    findings.add(e.registered ? State::degraded : State::lost, fault::not_converged, e.trouble);
+  }
+}
+
+void check_distances(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+  if (!e.metrics.valid) {
+    findings.add(State::lost, fault::q1_high, "no part of the map is in view");
+    return;
+  }
+  const double q1 = e.metrics.q1;
+  if (q1 > limits.health.q1_lost) {
+    findings.add(State::lost, fault::q1_high,
+                 format_text("Q1 %.3f m is above q1_lost %.3f m", q1, limits.health.q1_lost));
+  } else if (!(q1 <= limits.health.q1_healthy)) {
+    findings.add(State::degraded, fault::q1_high,
+                 format_text("Q1 %.3f m is above q1_healthy %.3f m", q1, limits.health.q1_healthy));
+  }
+}
+
+void check_integrity(const Evidence& e, Findings& findings) {
+  if (e.integrity.faults != 0) {
+    const bool contradicted = (e.integrity.faults & fault::contradicted) != 0;
+    findings.add(contradicted ? State::lost : State::degraded, e.integrity.faults, e.integrity.reason);
+  }
+}
+
+void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+  const Eigen::Vector3d& d = e.displacement;
+  const bool inside =
+      (d.array() >= limits.envelope_min.array()).all() && (d.array() <= limits.envelope_max.array()).all();
+  if (!inside) {
+    findings.add(
+        State::lost, fault::implausible,
+        format_text("displacement %.2f, %.2f, %.2f m is outside hull.envelope", d.x(), d.y(), d.z()));
+  }
+}
+
+void check_jump(const HealthLimits& limits, const HealthMemory& memory, const Evidence& e,
+                Findings& findings) {
+  if (!memory.last) {
+    return;
+  }
+  const double dt = std::max(0.0, to_seconds(e.time - memory.last->time));
+  const double jump = (e.displacement - memory.last->displacement).norm();
+  const double reach = limits.max_speed * dt + kJumpNoise;
+  if (jump > reach) {
+    findings.add(State::degraded, fault::implausible,
+                 format_text("pose jumped by %.2f m in %.1f s, at most %.2f m is possible", jump, dt, reach));
+  }
+  const double turn = rotation_angle(memory.last->rotation.transpose() * e.rotation);
+  if (turn > kTurnRate * dt + kTurnNoise) {
+    findings.add(State::degraded, fault::implausible,
+                 format_text("pose turned by %.2f deg in %.1f s", degrees(turn), dt));
+  }
+}
+
+void check_speed(const HealthLimits& limits, const HealthMemory& memory, Findings& findings) {
+  const auto velocity = memory.motion.velocity();
+  if (velocity && velocity->norm() > limits.max_speed) {
+    findings.add(
+        State::degraded, fault::implausible,
+        format_text("the hull moves at %.2f m/s, max_speed is %.2f m/s", velocity->norm(), limits.max_speed));
+  }
+}
+
+HealthVerdict idle(HealthMemory& memory, State state, Faults faults, std::string reason) {
+  memory.good_frames = 0;
+  memory.state = state;
+  return {state, faults, std::move(reason)};
+}
+
+HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const Evidence& e) {
+  Findings findings;
+  findings.faults = e.plc_faults;
+  check_registration(limits, e, findings);
+  if (e.registered) {
+    check_distances(limits, e, findings);
+    check_integrity(e, findings);
+    check_envelope(limits, e, findings);
+    if (findings.state != State::lost) {
+      memory.motion.add(e.time, e.displacement);
+    }
+    check_jump(limits, memory, e, findings);
+    check_speed(limits, memory, findings);
+  }
+
+  memory.good_frames = findings.state == State::tracking ? memory.good_frames + 1 : 0;
+  if (findings.state == State::tracking && memory.state != State::tracking &&
+      memory.good_frames < limits.health.recover_frames) {
+    findings.add(
+        State::degraded, 0,
+        format_text("recovering: %d good frames of %d", memory.good_frames, limits.health.recover_frames));
+  }
+  if (findings.state == State::tracking) {
+    memory.acquired = true;
+    memory.last = HealthMemory::HealthyPose{e.time, e.displacement, e.rotation};
+  } else if (!memory.acquired) {
+    findings.state = State::acquiring;
+  }
+  memory.state = findings.state;
+  return {findings.state, findings.faults, std::move(findings.reason)};
+}
+
+}  // namespace
+
+HealthLimits health_limits(const TrackerConfig& config) {
+  return {config.health, config.hull.envelope.min.cast<double>(), config.hull.envelope.max.cast<double>(),
+          config.hull.max_speed};
+}
+
+std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, HealthMemory memory,
+                                                    const Evidence& e) {
+  if (e.reacquire) {
+    memory = HealthMemory{};
+    memory.state = State::acquiring;
+  }
+  HealthVerdict verdict;
+  if (e.hold) {
+    verdict = idle(memory, State::held, e.plc_faults, "held by the PLC's command");
+  } else if ((e.plc_faults & fault::plc_stale) != 0 || !e.bracketed) {
+    const auto faults = static_cast<Faults>(e.plc_faults | fault::plc_stale);
+    verdict = idle(memory, State::fault, faults, "no joint samples bracket the scan");
+  } else {
+    verdict = judge_pose(limits, memory, e);
+  }
+  return {std::move(memory), std::move(verdict)};
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,188 @@
+#include "core/tracking/hull_tracker.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/base/text.hpp"
+#include "core/filter/voxel_filter.hpp"
+#include "core/registration/point_to_point_icp.hpp"
+#include "core/tracking/health.hpp"
+#include "core/tracking/integrity.hpp"
+#include "core/tracking/scan_view.hpp"
+#include "core/tracking/visibility.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+IcpConfig icp_config(const RegistrationConfig& c) {
+  return {c.max_correspondence_distance, c.max_iterations, c.translation_epsilon, c.rotation_epsilon};
+}
+
+/// 1-sigma along the largest principal axis of the pose's error as the scan sees it: how uncertain the
+/// plane step is, and the step itself, which was not taken.
+double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) {
+  const Eigen::Matrix3d second_moment = covariance + step * step.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(second_moment, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+}
+
+}  // namespace
+
+struct HullTracker::Impl {
+  TrackerConfig config;
+  HealthLimits limits;
+  std::shared_ptr<const HullMap> map;
+  ScanFilter scan_filter;
+  VoxelFilter voxel_filter;
+  PointToPointIcp icp;
+  Visibility visibility;
+  Integrity integrity;
+  HealthMemory memory;
+
+  // Buffers of one frame, kept for their capacity.
+  FilteredScan filtered;
+  Cloud thinned_W;
+  std::vector<ScanView> views;
+  std::vector<VisiblePoint> visible;
+  std::vector<double> distances;
+
+  Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
+       std::shared_ptr<const HullMap> m)
+      : config(c),
+        limits(health_limits(c)),
+        map(std::move(m)),
+        scan_filter(machine, std::move(sensors), c.hull.region),
+        voxel_filter(c.registration.voxel_size),
+        icp(icp_config(c.registration)),
+        visibility(c.health.metric_range),
+        views(scan_filter.sensors().size()) {
+    assert(map != nullptr);
+  }
+
+  TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
+  void register_scan(Evidence& evidence, TrackResult& result);
+  void look(const Joints& joints_mid);
+  DistanceMetrics measure(const Pose& T_W_H, const KdTree& scan_W);
+  void examine(const Joints& joints_mid, Evidence& evidence, TrackResult& result);
+};
+
+TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joints,
+                                       const FrameInputs& inputs) {
+  TrackResult result;
+  result.frame = scan.frame_number;
+  result.time = scan.mid_time();
+
+  Evidence evidence;
+  evidence.time = result.time;
+  evidence.hold = inputs.hold;
+  evidence.reacquire = inputs.reacquire;
+  evidence.plc_faults = inputs.plc_faults;
+  // The pose is that of the middle of the scan, so the joints must answer there too.
+  const JointHistory::Answer mid = joints.at(result.time);
+  evidence.bracketed = mid.lookup == JointHistory::Lookup::ok &&
+                       (scan.segments.empty() ||
+                        joints.covers(scan.first_firing, scan.last_firing) == JointHistory::Lookup::ok);
+  if (evidence.bracketed && !inputs.hold && (inputs.plc_faults & fault::plc_stale) == 0) {
+    scan_filter.run(scan, joints, filtered);
+    register_scan(evidence, result);
+    if (result.registered) {
+      examine(mid.joints, evidence, result);
+    }
+  }
+  auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
+  memory = std::move(next);
+  result.state = verdict.state;
+  result.health = verdict.state == State::tracking;
+  result.faults = verdict.faults;
+  result.reason = std::move(verdict.reason);
+  return result;
+}
+
+void HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
+  voxel_filter.filter(filtered.hull_W, thinned_W);
+  // Each frame starts from the PLC alone, independent of the past (Guo 2025, 2.2).
+  const IcpResult icp_result = icp.align(thinned_W, map->tree(), Pose::Identity());
+  const bool found = icp_result.stop == IcpStop::converged || icp_result.stop == IcpStop::iteration_limit;
+  result.registered = found;
+  result.converged = icp_result.converged;
+  result.iterations = icp_result.iterations;
+  result.matched = icp_result.matched;
+  evidence.registered = found;
+  evidence.converged = icp_result.converged;
+  evidence.matched = icp_result.matched;
+  evidence.trouble =
+      format_text("registration of %zu points: %s", thinned_W.size(), describe(icp_result.stop));
+  if (found) {
+    result.T_W_H = icp_result.T_target_source.inverse();
+  }
+}
+
+void HullTracker::Impl::examine(const Joints& joints_mid, Evidence& evidence, TrackResult& result) {
+  const Eigen::Vector3d& reference_H = config.hull.reference_point;
+  const Eigen::Vector3d reference_W = result.T_W_H * reference_H;
+  result.displacement = reference_W - reference_H;
+  result.rpy = rpy_from_rotation(result.T_W_H.linear());
+  look(joints_mid);
+  visibility.run(*map, map->subset_H(), result.T_W_H, views, scan_filter.sensors(), visible);
+  const IntegrityReport report = integrity.run(*map, visible, result.T_W_H, views, reference_W);
+  result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W));
+
+  if (report.step.solved) {
+    result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
+    result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);
+  }
+  evidence.metrics = result.metrics;
+  evidence.displacement = result.displacement;
+  evidence.rotation = result.T_W_H.linear();
+  evidence.integrity = judge_integrity(report);
+}
+
+void HullTracker::Impl::look(const Joints& joints_mid) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Pose T_W_L = lidar_pose(scan_filter.machine(), joints_mid, scan_filter.sensors()[i].mount);
+    views[i].rebuild(filtered.returns, static_cast<std::uint16_t>(i), T_W_L);
+  }
+}
+
+DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H, const KdTree& scan_W) {
+  const Eigen::Matrix3f R = T_W_H.linear().cast<float>();
+  const Point t = T_W_H.translation().cast<float>();
+  distances.clear();
+  const auto add = [&](const Point& p_H) {
+    if (const auto nearest = scan_W.nearest(R * p_H + t, static_cast<float>(kInfinity))) {
+      distances.push_back(std::sqrt(static_cast<double>(nearest->squared_distance)));
+    }
+  };
+  const bool full = config.metrics_scope == MetricsScope::visible_full;
+  if (config.metrics_scope == MetricsScope::whole_map) {
+    for (const Point& p_H : map->cloud_H()) {
+      add(p_H);
+    }
+    return summarise_distances(distances);
+  }
+  if (full) {
+    visibility.run(*map, map->cloud_H(), T_W_H, views, scan_filter.sensors(), visible);
+  }
+  const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
+  for (const VisiblePoint& point : visible) {
+    add(candidates_H[point.index]);
+  }
+  return summarise_distances(distances);
+}
+
+HullTracker::HullTracker(const TrackerConfig& config, const MachineConfig& machine,
+                         std::vector<SensorConfig> sensors, std::shared_ptr<const HullMap> map)
+    : impl_(std::make_unique<Impl>(config, machine, std::move(sensors), std::move(map))) {}
+HullTracker::~HullTracker() = default;
+HullTracker::HullTracker(HullTracker&&) noexcept = default;
+HullTracker& HullTracker::operator=(HullTracker&&) noexcept = default;
+
+TrackResult HullTracker::process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs) {
+  return impl_->process(scan, joints, inputs);
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,65 @@
+// What one LiDAR really saw in a scan, sorted by direction from its mid-scan pose.
+//
+// Frame L of the LiDAR at the middle of the scan, metres; cells of SphericalGrid. It answers three
+// questions: which returns lie near a direction, how near is the nearest return there, and does the sensor
+// look there at all. The field of view is learned: every cell row and column in which this LiDAR has ever
+// had a return; it only grows, so that a sight that went empty (the ship left, packets were lost) still
+// counts as looked at. Thread rule: one owner. Cost: one pass over the returns, no allocation in steady
+// state.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/filter/scan_filter.hpp"
+#include "core/geometry/spherical_grid.hpp"
+
+namespace hulltrack {
+
+class ScanView {
+ public:
+  /// Takes those of `returns` that LiDAR `lidar` measured; T_W_L is its pose at the middle of the scan.
+  void rebuild(std::span<const Return> returns, std::uint16_t lidar, const Pose& T_W_L);
+
+  [[nodiscard]] const Pose& T_W_L() const { return T_W_L_; }
+
+  /// The returns in a cell, in L.
+  [[nodiscard]] std::span<const Point> returns(SphericalGrid::Cell cell) const {
+    const std::size_t i = cell.index();
+    return std::span(points_L_).subspan(first_[i], first_[i + 1] - first_[i]);
+  }
+
+  [[nodiscard]] bool looks_at(SphericalGrid::Cell cell) const {
+    return rows_seen_[static_cast<std::size_t>(cell.row)] &&
+           columns_seen_[static_cast<std::size_t>(cell.column)];
+  }
+
+  /// True if a point at `range` in this cell is behind what the scan saw: by kBehind in the cell itself, or
+  /// by kFarBehind in a neighbouring one (beams are sparser than cells; a chute is nearer by metres, while a
+  /// deck seen at a low angle changes its range by decimetres from cell to cell).
+  [[nodiscard]] bool hidden(SphericalGrid::Cell cell, float range) const {
+    return nearest_[cell.index()] < range - kBehind || nearest_around_[cell.index()] < range - kFarBehind;
+  }
+
+  static constexpr float kBehind = 0.4F;     // m (ICD 3)
+  static constexpr float kFarBehind = 2.0F;  // m
+
+ private:
+  void sort_by_cell();
+  void find_nearest();
+
+  Pose T_W_L_ = Pose::Identity();
+  std::vector<Point> unsorted_L_;
+  std::vector<std::uint32_t> cell_of_;
+  std::vector<Point> points_L_;        // by cell
+  std::vector<std::uint32_t> first_;   // kCells + 1 offsets into points_L_
+  std::vector<float> nearest_;         // per cell, m; infinity without a return
+  std::vector<float> nearest_around_;  // per cell and its eight neighbours
+  std::bitset<SphericalGrid::kRows> rows_seen_;
+  std::bitset<SphericalGrid::kColumns> columns_seen_;
+};
+
+}  // namespace hulltrack

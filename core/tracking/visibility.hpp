@@ -1,0 +1,45 @@
+// Which map points can this scan be expected to see, if the hull is where the pose says? (ICD 3)
+//
+// A point is visible to a LiDAR if, seen from its mid-scan pose, it lies in a direction that the LiDAR looks
+// at, between min_range and min(max_range, metric_range); if it is front-most in a range image of the map
+// (cells of 1 deg, 0.4 m tolerance); and if the scan has no nearer return there. Seen by one LiDAR is enough.
+// Frames: map in H, result in L of the LiDAR that sees it; metres.
+// Thread rule: one owner, scratch is kept. Cost: a few ns a map occluder and candidate.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/filter/scan_filter.hpp"
+#include "core/map/hull_map.hpp"
+#include "core/tracking/scan_view.hpp"
+
+namespace hulltrack {
+
+struct VisiblePoint {
+  std::uint32_t index;  // into the candidates
+  std::uint16_t lidar;  // the first that sees it
+  Point p_L;            // where it is expected, in that LiDAR's frame
+};
+
+class Visibility {
+ public:
+  explicit Visibility(double metric_range) : metric_range_(metric_range) {}
+
+  /// `candidates_H`: map points to judge. `views` and `sensors`: one a LiDAR. `out` is replaced, in order of
+  /// the candidates.
+  void run(const HullMap& map, std::span<const Point> candidates_H, const Pose& T_W_H,
+           std::span<const ScanView> views, std::span<const SensorConfig> sensors,
+           std::vector<VisiblePoint>& out);
+
+ private:
+  void render(std::span<const Point> occluders_H, const Eigen::Matrix3f& R_L_H, const Point& t_L_H,
+              float range);
+
+  double metric_range_;
+  std::vector<float> map_nearest_;  // per cell, m
+  std::vector<bool> seen_;          // per candidate, by an earlier LiDAR
+};
+
+}  // namespace hulltrack
