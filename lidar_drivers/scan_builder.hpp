@@ -1,16 +1,17 @@
 // Datagrams of every LiDAR -> frames: which points were measured in which frame?
 //
 // Period framing: one grid for all LiDARs, frame k = [t0 + k P, t0 + (k + 1) P), t0 = the first firing of
-// the first decoded datagram. Revolution framing: a frame ends when the rotor of the first LiDAR passes
-// zero azimuth. Both cut between two firings, inside a datagram or a block if need be; a point is in
-// exactly one frame. Frames without a datagram are left out and their numbers skipped.
-// A frame is finished when every LiDAR that is sending has delivered beyond its end; what comes for it later
-// is counted and dropped. Bytes are untrusted: nothing throws, memory is bounded. Owner: one thread.
+// the first decoded datagram. Revolution framing: a frame ends when the rotor of the first LiDAR passes zero
+// azimuth. Both cut between two firings, inside a datagram or a block if need be; a point is in exactly
+// one frame. Frames without a datagram are left out and, with period framing, their numbers skipped.
+// Firing times hang on the datagram's receive stamp as it is, unsmoothed; one that was overtaken on the
+// way is put where the sensor's clock says. Bytes are untrusted: nothing throws, memory is bounded.
+// Owner: one thread.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,11 @@
 #include "core/geometry/scan.hpp"
 #include "lidar_drivers/datagram.hpp"
 #include "lidar_drivers/decoder.hpp"
+#include "lidar_drivers/frame_assembler.hpp"
 #include "lidar_drivers/lidar_config.hpp"
 #include "lidar_drivers/packet_sequence.hpp"
 
 namespace hulltrack {
-
-/// More points than this in one frame are counted and dropped.
-inline constexpr std::size_t kMaxScanPoints = 500'000;
 
 /// What is known of one LiDAR. Counters run from the start.
 struct LidarStatus {
@@ -76,50 +75,40 @@ class ScanBuilder {
 
   [[nodiscard]] LidarStatus status(std::size_t lidar) const;
   /// Finished frames that nobody took in time (the newest four are kept).
-  [[nodiscard]] std::uint64_t frames_overrun() const { return frames_overrun_; }
+  [[nodiscard]] std::uint64_t frames_overrun() const { return frames_.frames_overrun(); }
+  /// How often the stamps ran back by seconds, as in a recording across a clock that was set.
+  [[nodiscard]] std::uint64_t clock_steps() const { return frames_.clock_steps(); }
 
  private:
+  /// One second of stamps, for rates.
+  struct RateWindow {
+    MeasurementTime begin{};
+    std::uint64_t packets = 0;
+    std::uint64_t lost = 0;
+  };
   struct Lidar {
     LidarConfig config;
     std::unique_ptr<Decoder> decoder;
     PacketSequence sequence;
     LidarStatus status;
     DecodeOutcome last_rejection;
-    MeasurementTime newest{};  // last firing delivered so far
-    MeasurementTime last_crossing{};
-    double last_azimuth = 0.0;
-    MeasurementTime second_begin{};
-    std::uint64_t second_packets = 0;
-    std::uint64_t second_lost = 0;
-  };
-  struct Frame {
-    Scan scan;
-    bool used = false;
+    MeasurementTime newest{};  // last firing of the newest datagram
+    double newest_azimuth = 0.0;
+    std::optional<MeasurementTime> last_crossing;
+    RateWindow window;
   };
 
-  ScanBuilder(Framing framing, Nanoseconds period);
-  void begin_frames(MeasurementTime start);
-  void make_room(MeasurementTime first, MeasurementTime last);
-  void note_crossing(Lidar& lidar, MeasurementTime first, MeasurementTime last);
-  void place(std::size_t lidar, MeasurementTime first, MeasurementTime last);
-  void place_part(Frame& frame, std::size_t lidar, MeasurementTime last, MeasurementTime from,
-                  MeasurementTime to);
-  void close_current();
-  void close_complete();
-  void open(Frame& frame, std::uint32_t number, MeasurementTime begin);
-  [[nodiscard]] MeasurementTime measuring_time(Lidar& lidar, const Datagram& datagram);
-  void update_rates(Lidar& lidar, MeasurementTime time, std::uint64_t lost);
+  ScanBuilder(std::vector<Lidar> lidars, const FramingConfig& framing);
+  void note_sequence(std::size_t index, const PacketSequence::Step& step);
+  void note_packet(Lidar& lidar, MeasurementTime time);
+  [[nodiscard]] static MeasurementTime host_or_sensor_time(Lidar& lidar, const DecodedPacket& packet,
+                                                           const Datagram& datagram);
+  [[nodiscard]] std::optional<MeasurementTime> zero_crossing(const Lidar& lidar, MeasurementTime last) const;
 
   Framing framing_;
-  Nanoseconds period_;  // revolution framing: the longest wait for a crossing
   std::vector<Lidar> lidars_;
+  FrameAssembler frames_;
   DecodedPacket packet_;  // scratch
-  bool started_ = false;
-  Frame current_;
-  Frame next_;
-  std::deque<Scan> finished_;
-  std::vector<Scan> spare_;  // buffers to use again
-  std::uint64_t frames_overrun_ = 0;
 };
 
 }  // namespace hulltrack

@@ -6,13 +6,11 @@
 // LiDARs that share a port share one source. Thread rule: one owner.
 #pragma once
 
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/result.hpp"
@@ -39,7 +37,7 @@ class UdpSource {
   UdpSource& operator=(UdpSource&& other) noexcept;
   ~UdpSource();
 
-  [[nodiscard]] int fd() const { return fd_; }
+  [[nodiscard]] int fd() const { return fd_.get(); }
   /// The bound port: what the configuration says, or what the kernel chose for 0.
   [[nodiscard]] std::uint16_t port() const { return port_; }
 
@@ -56,13 +54,29 @@ class UdpSource {
  private:
   struct Buffers;
 
+  /// Closes what it holds.
+  class Descriptor {
+   public:
+    explicit Descriptor(int fd) : fd_(fd) {}
+    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+      std::swap(fd_, other.fd_);
+      return *this;
+    }
+    ~Descriptor();
+    [[nodiscard]] int get() const { return fd_; }
+
+   private:
+    int fd_;
+  };
+
   explicit UdpSource(int fd);
   void enlarge_receive_buffer();
-  [[nodiscard]] Result<void> bind_to(const LidarConfig& lidar);
+  [[nodiscard]] Result<void> bind_to(const LidarConfig& lidar, bool multicast);
   [[nodiscard]] Result<void> join_group(const LidarConfig& lidar);
   [[nodiscard]] bool accepts(std::uint32_t ip) const;
 
-  int fd_ = -1;
+  Descriptor fd_;
   std::uint16_t port_ = 0;
   std::vector<std::uint32_t> allowed_;  // host byte order; empty = any
   UdpCounters counters_;

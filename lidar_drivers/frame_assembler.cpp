@@ -1,0 +1,201 @@
+#include "lidar_drivers/frame_assembler.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+namespace hulltrack {
+
+namespace {
+
+/// A LiDAR this far behind the others is not waited for.
+constexpr Nanoseconds kGrace = std::chrono::milliseconds(20);
+/// Slower than any LiDAR turns.
+constexpr Nanoseconds kLongestRevolution = std::chrono::milliseconds(250);
+/// Time running back by more than this is a clock that was set, not a late datagram.
+constexpr Nanoseconds kClockStep = std::chrono::seconds(2);
+constexpr std::size_t kFinishedKept = 4;
+
+std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+}  // namespace
+
+FrameAssembler::FrameAssembler(const FramingConfig& framing, std::size_t lidars)
+    : framing_(framing.framing),
+      span_(framing.framing == Framing::period ? Nanoseconds(std::llround(1e9 / framing.frame_rate_hz))
+                                               : kLongestRevolution),
+      progress_(lidars) {
+  assert(framing.frame_rate_hz > 0.0 && framing.frame_rate_hz <= 1000.0);
+  start({}, 0);
+  started_ = false;
+}
+
+void FrameAssembler::start(MeasurementTime begin, std::int64_t number) {
+  started_ = true;
+  anchor_ = begin - number * span_;
+  reset(current_, begin, number);
+  open_next();
+}
+
+void FrameAssembler::reset(Frame& frame, MeasurementTime begin, std::int64_t number) const {
+  frame.number = number;
+  frame.used = false;
+  frame.scan.clear();
+  frame.scan.lidars.resize(progress_.size());
+  frame.scan.frame_number = static_cast<std::uint32_t>(number);
+  frame.scan.begin = begin;
+  frame.scan.end = begin + span_;
+  frame.scan.first_firing = frame.scan.last_firing = begin;
+  frame.scan.last_received = {};
+}
+
+void FrameAssembler::open_next() { reset(next_, current_.scan.end, current_.number + 1); }
+
+void FrameAssembler::cut(MeasurementTime boundary) {
+  if (!started_ || boundary <= current_.scan.begin) return;
+  while (boundary >= current_.scan.end) {
+    if (!current_.used && !next_.used) return;
+    close_current();
+  }
+  if (boundary <= current_.scan.begin || next_.used) return;
+  current_.scan.end = boundary;
+  open_next();
+}
+
+FrameAssembler::Refused FrameAssembler::place(std::size_t lidar, const DecodedPacket& packet,
+                                              MeasurementTime last) {
+  assert(lidar < progress_.size());
+  const MeasurementTime first = last - packet.duration;
+  if (!started_) start(first, 0);
+  make_room(first);
+
+  Refused refused;
+  if (first < current_.scan.begin) {
+    refused.late =
+        static_cast<std::uint32_t>(std::ranges::count_if(packet.points, [&](const LidarPoint& point) {
+          return last + Nanoseconds(point.dt_ns) < current_.scan.begin;
+        }));
+  }
+  MeasurementTime placed_until = current_.scan.begin;
+  for (;;) {
+    for (Frame* frame : {&current_, &next_}) {
+      if (frame->scan.begin < placed_until) continue;
+      if (first < frame->scan.end && last >= frame->scan.begin) {
+        refused.over_limit += place_in(*frame, lidar, packet, last);
+      }
+      placed_until = frame->scan.end;
+    }
+    if (last < next_.scan.end) break;
+    close_current();  // a datagram longer than a frame: the sensor leaves a sector out
+  }
+  Progress& progress = progress_[lidar];
+  progress.newest = progress.seen ? std::max(progress.newest, last) : last;
+  progress.seen = true;
+  newest_ = std::max(newest_, last);
+  close_complete();
+  return refused;
+}
+
+void FrameAssembler::make_room(MeasurementTime first) {
+  if (first + kClockStep < current_.scan.begin) {
+    finish();
+    ++clock_steps_;
+    newest_ = {};
+    for (Progress& progress : progress_) progress = {};
+    start(first, current_.number);
+    return;
+  }
+  while (first >= next_.scan.end) {
+    if (current_.used || next_.used) {
+      close_current();
+    } else if (framing_ == Framing::period) {
+      const std::int64_t number = floor_divide((first - anchor_).count(), span_.count());
+      reset(current_, anchor_ + number * span_, number);
+      open_next();
+      return;
+    } else {
+      start(first, current_.number);
+      return;
+    }
+  }
+}
+
+std::uint32_t FrameAssembler::place_in(Frame& frame, std::size_t lidar, const DecodedPacket& packet,
+                                       MeasurementTime last) {
+  std::uint32_t over_limit = 0;
+  Scan& scan = frame.scan;
+  const MeasurementTime from = std::max(last - packet.duration, scan.begin);
+  const MeasurementTime to = std::min(last, scan.end - Nanoseconds(1));
+  const MeasurementTime middle = from + (to - from) / 2;
+  const auto to_middle = static_cast<std::int32_t>((last - middle).count());
+  const std::int64_t from_dt = (from - last).count();
+  const std::int64_t to_dt = (to - last).count();
+  const auto begin = static_cast<std::uint32_t>(scan.points.size());
+  for (const LidarPoint& point : packet.points) {
+    if (point.dt_ns < from_dt || point.dt_ns > to_dt) continue;
+    if (scan.points.size() >= kMaxScanPoints) {
+      ++over_limit;
+      continue;
+    }
+    scan.points.push_back(point);
+    scan.points.back().dt_ns += to_middle;
+  }
+  const auto count = static_cast<std::uint32_t>(scan.points.size()) - begin;
+  if (count > 0) scan.segments.push_back({middle, begin, count, static_cast<std::uint16_t>(lidar)});
+  scan.first_firing = frame.used ? std::min(scan.first_firing, from) : from;
+  scan.last_firing = frame.used ? std::max(scan.last_firing, to) : to;
+  frame.used = true;
+  LidarFrameCounters& counters = scan.lidars[lidar];
+  ++counters.packets;
+  counters.points += count;
+  counters.points_over_limit += over_limit;
+  return over_limit;
+}
+
+void FrameAssembler::close_complete() {
+  while (current_.used || next_.used) {
+    const MeasurementTime end = current_.scan.end;
+    const bool waiting = std::ranges::any_of(progress_, [&](const Progress& progress) {
+      return progress.seen && progress.newest < end && newest_ - progress.newest <= kGrace;
+    });
+    if (newest_ < end || waiting) return;
+    close_current();
+  }
+}
+
+void FrameAssembler::advance(MeasurementTime now) {
+  while ((current_.used || next_.used) && now - kGrace >= current_.scan.end) close_current();
+}
+
+void FrameAssembler::finish() {
+  while (current_.used || next_.used) close_current();
+}
+
+void FrameAssembler::close_current() {
+  if (current_.used) {
+    finished_.push_back(std::move(current_.scan));
+    if (finished_.size() > kFinishedKept) {
+      spare_.push_back(std::move(finished_.front()));
+      finished_.pop_front();
+      ++frames_overrun_;
+    }
+    current_.scan = Scan{};
+    if (!spare_.empty()) {
+      current_.scan = std::move(spare_.back());
+      spare_.pop_back();
+    }
+  }
+  std::swap(current_, next_);
+  open_next();
+}
+
+bool FrameAssembler::take(Scan& out) {
+  if (finished_.empty()) return false;
+  std::swap(out, finished_.front());
+  if (spare_.size() < kFinishedKept) spare_.push_back(std::move(finished_.front()));
+  finished_.pop_front();
+  return true;
+}
+
+}  // namespace hulltrack
