@@ -42,11 +42,12 @@ std::string hex(std::uint16_t value) {
 
 }  // namespace
 
-PlcClient::PlcClient(PlcConfig config, ModbusLink::Clock now)
+PlcClient::PlcClient(PlcConfig config, ModbusLink::Clock now, std::uint16_t heartbeat)
     : config_(without_unused_heartbeat(std::move(config))),
       now_(now ? std::move(now) : [] { return SteadyTime(std::chrono::steady_clock::now()); }),
       link_(link_config(config_), now_),
       read_registers_(checked_block_size(config_.read)),
+      heartbeat_(heartbeat),
       last_read_back_(now_()) {}
 
 PlcPoll PlcClient::poll() {

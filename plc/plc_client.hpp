@@ -59,7 +59,8 @@ class PlcClient {
  public:
   /// Does not connect. `now` as in ModbusLink. Throws std::invalid_argument when the read block does not
   /// fit one request. heartbeat_timeout 0 means that the PLC has neither heartbeat nor tail copy.
-  explicit PlcClient(PlcConfig config, ModbusLink::Clock now = {});
+  /// `heartbeat`: ours goes on counting from here.
+  explicit PlcClient(PlcConfig config, ModbusLink::Clock now = {}, std::uint16_t heartbeat = 0);
 
   [[nodiscard]] PlcPoll poll();
 
@@ -68,6 +69,8 @@ class PlcClient {
   /// read first: then a foreign hand had the longest time to show.
   [[nodiscard]] PlcWrite write(const WriteBlock& block);
 
+  /// Our heartbeat of the last write that was tried.
+  [[nodiscard]] std::uint16_t heartbeat() const { return heartbeat_; }
   [[nodiscard]] bool connected() const { return link_.connected(); }
   [[nodiscard]] std::uint64_t connections() const { return link_.connections(); }
 
@@ -79,7 +82,7 @@ class PlcClient {
   ModbusLink link_;
   std::vector<std::uint16_t> read_registers_;
   std::optional<std::uint16_t> last_heartbeat_;  // the PLC's, of the last ok poll
-  std::uint16_t heartbeat_ = 0;                  // ours
+  std::uint16_t heartbeat_;                      // ours
   std::optional<WriteRegisters> last_written_;   // on this connection
   SteadyTime last_read_back_{};
 };

@@ -1,0 +1,59 @@
+// Everything that the threads rx, track and plc hand to each other: the only state they share.
+//
+// rx -> track: scans, newest wins. plc -> track: joint samples, and how the PLC stands. track -> plc: the
+// newest frame's result. rx -> plc: how the LiDARs stand. All -> main: figures and what the registers say.
+// Two doorbells wake track and plc. Every member is safe for the threads named beside it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/base/status.hpp"
+#include "core/geometry/scan.hpp"
+#include "core/tracking/hull_tracker.hpp"
+#include "daemon/app/doorbell.hpp"
+#include "daemon/app/event_bits.hpp"
+#include "daemon/app/figures.hpp"
+#include "daemon/app/joint_feed.hpp"
+#include "daemon/app/mailbox.hpp"
+#include "daemon/app/triple_buffer.hpp"
+#include "plc/write_block.hpp"
+
+namespace hulltrack {
+
+/// How the LiDARs stand, as rx knows it.
+struct LidarView {
+  Faults standing = 0;  // lidar_silent, clock
+  bool every_silent = false;
+  SteadyTime updated{};  // rx last looked; zero = never
+};
+
+/// How the PLC stands, as the plc thread knows it.
+struct PlcView {
+  bool hold = false;
+  std::uint32_t reacquire_edges = 0;  // counted, so that track misses none between two frames
+  Faults standing = 0;                // plc_stale, plc_value
+};
+
+/// One frame that track is done with.
+struct FrameDone {
+  std::uint64_t sequence = 0;  // 1 for the first; 0 = none yet
+  TrackResult result;
+  SteadyTime last_received{};  // the scan's last packet
+  SteadyTime done{};
+};
+
+struct Exchange {
+  TripleBuffer<Scan> scans;       // rx produces, track consumes
+  JointFeed joints;               // plc pushes, track drains
+  Mailbox<LidarView> lidars;      // rx puts, plc gets
+  Mailbox<PlcView> plc;           // plc puts, track gets
+  Mailbox<FrameDone> frame;       // track puts, plc gets
+  Mailbox<WriteBlock> registers;  // plc puts, main gets
+  EventBits events;               // rx and track raise, plc collects
+  FigureBoard figures;            // all add, main takes
+  Doorbell track_bell;            // a scan or a joint sample has come
+  Doorbell plc_bell;              // a frame is done
+};
+
+}  // namespace hulltrack

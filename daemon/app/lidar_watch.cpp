@@ -1,0 +1,120 @@
+#include "daemon/app/lidar_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/app/live_time.hpp"
+#include "daemon/app/text.hpp"
+
+namespace hulltrack {
+namespace {
+
+/// Lost packets below this share are left to the minute's summary.
+constexpr double kWorthyLoss = 0.005;
+/// A motor holds its speed within a few rpm; beyond this share it was set to something else.
+constexpr double kRateTolerance = 0.05;
+
+}  // namespace
+
+LidarWatch::LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& log, SteadyTime start)
+    : config_(config),
+      name_("LiDAR " + config.name),
+      expected_rpm_(expected_rpm),
+      start_(start),
+      silence_log_(log, LogLevel::error),
+      foreign_log_(log),
+      rejected_log_(log),
+      overflow_log_(log),
+      loss_log_(log),
+      rate_log_(log),
+      clock_log_(log) {}
+
+Faults LidarWatch::update(const LidarEvidence& evidence, SteadyTime now) {
+  update_silence(evidence, now);
+  update_refused(evidence, now);
+  update_quality(evidence, now);
+  Faults standing = 0;
+  standing |= silent_ ? fault::lidar_silent : Faults{0};
+  standing |= evidence.status.clock_fault ? fault::clock : Faults{0};
+  return standing;
+}
+
+void LidarWatch::update_silence(const LidarEvidence& evidence, SteadyTime now) {
+  const SteadyTime heard =
+      evidence.status.packets > 0 ? live_steady_time(evidence.status.last_received) : start_;
+  silent_ = now - heard > config_.timeout;
+  silence_log_.update(
+      silent_, now,
+      [&] {
+        return text(
+            "%s: no usable packet on UDP port %u for %.1f s, so no new pose. Check its power, its cable, "
+            "that it sends to this computer and that a firewall lets it through",
+            name_.c_str(), config_.port, to_seconds(now - heard));
+      },
+      [&](Nanoseconds lasted) {
+        return text("%s: packets again after %.1f s", name_.c_str(), to_seconds(lasted + config_.timeout));
+      });
+}
+
+void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
+  foreign_log_.update(
+      foreign_grows_.update(evidence.foreign, now), now,
+      [&] {
+        return text(
+            "%s: dropped datagrams from %s, which is not the configured source %s; %llu so far. Poses are "
+            "not affected; find out who sends to UDP port %u",
+            name_.c_str(), evidence.last_foreign.c_str(), config_.source.c_str(),
+            static_cast<unsigned long long>(evidence.foreign), config_.port);
+      },
+      [&](Nanoseconds) { return name_ + ": no more datagrams from foreign senders"; });
+  rejected_log_.update(
+      rejected_grows_.update(evidence.status.packets_rejected, now), now,
+      [&] {
+        return text(
+            "%s: dropped datagrams that are not those of a %s: %s; %llu so far. Compare `model` and "
+            "`port` in the configuration with the sensor",
+            name_.c_str(), config_.model.c_str(), evidence.status.last_rejection.c_str(),
+            static_cast<unsigned long long>(evidence.status.packets_rejected));
+      },
+      [&](Nanoseconds) { return name_ + ": no more malformed datagrams"; });
+  overflow_log_.update(
+      overflow_grows_.update(evidence.kernel_overflows, now), now,
+      [&] {
+        return text(
+            "%s: the kernel's receive buffer overflowed, %llu packets lost so far. Is this computer "
+            "overloaded? See net.core.rmem_max in hulltrackd(8)",
+            name_.c_str(), static_cast<unsigned long long>(evidence.kernel_overflows));
+      },
+      [&](Nanoseconds) { return name_ + ": the receive buffer does not overflow any more"; });
+}
+
+void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
+  const LidarStatus& status = evidence.status;
+  loss_log_.update(
+      !silent_ && status.loss > kWorthyLoss, now,
+      [&] {
+        return text(
+            "%s: %.1f %% of its packets get lost on the way. Check cable, switch and this computer's load",
+            name_.c_str(), 100.0 * status.loss);
+      },
+      [&](Nanoseconds) { return name_ + ": no packets get lost any more"; });
+  const bool turning = !silent_ && status.rpm > 0.0;
+  rate_log_.update(
+      turning && std::abs(status.rpm - expected_rpm_) > kRateTolerance * expected_rpm_, now,
+      [&] {
+        return text("%s: turns at %.0f rpm where frame_rate_hz asks for %.0f, so a frame is not one turn",
+                    name_.c_str(), status.rpm, expected_rpm_);
+      },
+      [&](Nanoseconds) { return text("%s: turns at %.0f rpm again", name_.c_str(), status.rpm); });
+  clock_log_.update(
+      status.clock_fault, now,
+      [&] {
+        return text(
+            "%s: its clock is off by %.3f s; the time of reception is used instead. Check its time "
+            "synchronisation",
+            name_.c_str(), to_seconds(status.clock_offset));
+      },
+      [&](Nanoseconds) { return name_ + ": its clock agrees again"; });
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,49 @@
+// How does one LiDAR stand? Judges the drivers' counters: faults for the registers, words for the log.
+//
+// Each condition has one line when it begins and one when it ends, in words that say what it means and
+// what to do. Thread rule: one owner (rx). `now` is handed in. Cost: a few comparisons.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/status.hpp"
+#include "daemon/app/condition_log.hpp"
+#include "lidar_drivers/lidar_config.hpp"
+#include "lidar_drivers/scan_builder.hpp"
+
+namespace hulltrack {
+
+/// What the drivers know of one LiDAR now. Counters run from the start.
+struct LidarEvidence {
+  LidarStatus status;
+  std::uint64_t foreign = 0;           // datagrams of the socket from unknown senders
+  std::string last_foreign;            // "10.0.0.7:5000"
+  std::uint64_t kernel_overflows = 0;  // of the socket
+};
+
+class LidarWatch {
+ public:
+  /// `expected_rpm`: what a rotor that makes one turn a frame does. `log` must outlive this object.
+  LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& log, SteadyTime start);
+
+  /// Standing faults: lidar_silent, clock. Call it some times a second.
+  Faults update(const LidarEvidence& evidence, SteadyTime now);
+
+  [[nodiscard]] bool silent() const { return silent_; }
+
+ private:
+  void update_silence(const LidarEvidence& evidence, SteadyTime now);
+  void update_refused(const LidarEvidence& evidence, SteadyTime now);
+  void update_quality(const LidarEvidence& evidence, SteadyTime now);
+
+  LidarConfig config_;
+  std::string name_;  // "LiDAR boom"
+  double expected_rpm_;
+  SteadyTime start_;
+  bool silent_ = false;
+  RecentGrowth foreign_grows_, rejected_grows_, overflow_grows_;
+  ConditionLog silence_log_, foreign_log_, rejected_log_, overflow_log_, loss_log_, rate_log_, clock_log_;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,163 @@
+#include "daemon/app/plc_thread.hpp"
+
+#include <algorithm>
+
+#include "daemon/app/frame_pipeline.hpp"
+#include "daemon/app/live_time.hpp"
+
+namespace hulltrack {
+namespace {
+
+/// A heartbeat is written this much before it is due, so that a poll in progress does not make it late.
+constexpr Nanoseconds kWriteMargin = std::chrono::milliseconds(10);
+/// rx looks at the LiDARs every 20 ms; after this long without a look nothing is known of them.
+constexpr Nanoseconds kLidarViewAge = std::chrono::seconds(1);
+
+/// The next point of a grid after `now`; turns that were missed are left out.
+SteadyTime next_on_grid(SteadyTime due, Nanoseconds period, SteadyTime now) {
+  return now < due + period ? due + period : due + ((now - due) / period + 1) * period;
+}
+
+}  // namespace
+
+PlcThread::PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log,
+                     std::uint16_t heartbeat)
+    : exchange_(exchange),
+      pulse_(pulse),
+      config_(config.plc),
+      client_(config.plc, {}, heartbeat),
+      gate_(joint_gate_config(config.plc)),
+      publication_(config.tracker.health.max_age),
+      watch_(config.plc, log, steady_now()),
+      state_log_(log) {}
+
+void PlcThread::run(std::stop_token stop) {
+  try {
+    SteadyTime next_poll = steady_now();
+    SteadyTime next_write = next_poll;
+    const Nanoseconds write_gap = config_.write_period - std::min(kWriteMargin, config_.write_period / 4);
+    while (!stop.stop_requested()) {
+      if (const SteadyTime now = steady_now(); now >= next_poll) {
+        poll();
+        next_poll = next_on_grid(next_poll, config_.poll_period, now);
+      }
+      take_frame();
+      if (const SteadyTime now = steady_now(); unwritten_ || now >= next_write) {
+        write(false);
+        next_write = now + write_gap;
+      }
+      const SteadyTime now = steady_now();
+      pulse_.beat(now);
+      publish_view(now);
+      exchange_.plc_bell.wait_until(std::min(next_poll, next_write));
+    }
+  } catch (...) {
+    write(true);
+    throw;
+  }
+  if (last_write_) {
+    write(true);
+  }
+}
+
+void PlcThread::poll() {
+  const PlcPoll answer = client_.poll();
+  const SteadyTime now = steady_now();
+  watch_.polled(answer, now);
+  if (answer.ok()) {
+    take_reading(answer);
+  }
+  Figures figures;
+  figures.polls = 1;
+  figures.polls_failed = answer.ok() ? 0 : 1;
+  if (answer.ok()) {
+    figures.round_trip_ms.add(to_milliseconds(answer.answered - answer.requested));
+  }
+  exchange_.figures.add(figures);
+}
+
+void PlcThread::take_reading(const PlcPoll& answer) {
+  if (!answer.fresh) {
+    return;  // torn, or no news; while the data is stale the last command stays in force
+  }
+  if (command_.read(answer.reading.command)) {
+    gate_.reacquire();
+    ++view_.reacquire_edges;
+  }
+  const PlcReading& reading = answer.reading;
+  const JointSample sample{live_measurement_time(answer.stamp() - config_.latency),
+                           joints_from_plc(reading.travel_m, reading.slew_deg, reading.luff_deg)};
+  const JointGate::Outcome outcome = gate_.offer({sample, reading.heartbeat});
+  watch_.judged(outcome, answer.answered);
+  publish_view(answer.answered);  // before the sample: a frame must not be judged by an older view
+  if (outcome.verdict == JointGate::Verdict::believed) {
+    exchange_.joints.push(sample);
+    exchange_.track_bell.ring();
+  }
+}
+
+void PlcThread::take_frame() {
+  FrameDone frame = exchange_.frame.get();
+  if (frame.sequence == frame_sequence_) {
+    return;
+  }
+  frame_sequence_ = frame.sequence;
+  reason_ = frame.result.reason;
+  publication_.frame(frame.result, steady_now(), frame.done - frame.last_received);
+  unwritten_ = std::move(frame);
+}
+
+PublicationContext PlcThread::context(bool stopped, SteadyTime now) const {
+  const LidarView lidars = exchange_.lidars.get();
+  const bool known = lidars.updated == SteadyTime{} || now - lidars.updated < kLidarViewAge;
+  return {.stopped = stopped,
+          .every_lidar_silent = lidars.every_silent || !known,
+          .standing = static_cast<Faults>(lidars.standing | view_.standing),
+          .command = command_.command()};
+}
+
+void PlcThread::publish_view(SteadyTime now) {
+  view_.hold = command_.hold();
+  view_.standing = watch_.standing(now);
+  exchange_.plc.put(view_);
+}
+
+void PlcThread::write(bool stopped) {
+  const SteadyTime now = steady_now();
+  Faults events = exchange_.events.collect();
+  if (watch_.link_was_lost()) {
+    events |= fault::plc_link_lost;
+  }
+  publication_.events(events, now);
+  view_.standing = watch_.standing(now);
+  const WriteBlock block = publication_.block(context(stopped, now), now);
+  const PlcWrite written = client_.write(block);
+  watch_.wrote(written, steady_now());
+  exchange_.registers.put(block);
+  state_log_.update(block, reason_, now);
+  note_write(written);
+  if (unwritten_ && block.health) {
+    Figures healthy;
+    healthy.healthy_frames = 1;
+    exchange_.figures.add(healthy);
+  }
+  unwritten_.reset();
+}
+
+void PlcThread::note_write(const PlcWrite& written) {
+  Figures figures;
+  if (!written.ok()) {
+    figures.writes_failed = 1;
+  } else {
+    if (last_written_ != SteadyTime{}) {
+      figures.write_gap_ms.add(to_milliseconds(written.answered - last_written_));
+    }
+    last_written_ = written.answered;
+    if (unwritten_) {
+      figures.latency_ms.add(to_milliseconds(written.answered - unwritten_->last_received));
+    }
+  }
+  exchange_.figures.add(figures);
+}
+
+}  // namespace hulltrack

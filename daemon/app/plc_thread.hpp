@@ -1,0 +1,61 @@
+// The thread that talks to the PLC: joints in at every poll, registers out at every frame and heartbeat.
+//
+// Polls on a fixed grid of poll_period, writes at once when a frame is done and never less often than
+// write_period. It computes the age of the pose and takes the health away by itself (publication.hpp), so
+// that a stuck tracker can never look healthy. An unreachable PLC costs nothing but its response timeout.
+// When asked to stop as a service it writes health 0, state 7 last, also after an exception.
+// Thread rule: run() in a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <stop_token>
+
+#include "daemon/app/command_word.hpp"
+#include "daemon/app/exchange.hpp"
+#include "daemon/app/plc_watch.hpp"
+#include "daemon/app/publication.hpp"
+#include "daemon/app/state_log.hpp"
+#include "daemon/app/thread_watch.hpp"
+#include "daemon/config/config.hpp"
+#include "plc/plc_client.hpp"
+
+namespace hulltrack {
+
+class PlcThread {
+ public:
+  /// Does not connect. References must outlive this object. `heartbeat`: the last one that was written.
+  PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log, std::uint16_t heartbeat);
+
+  void run(std::stop_token stop);
+
+  /// A reload: somebody else goes on writing, so the last write does not say "stopped".
+  void leave_without_last_write() { last_write_ = false; }
+  [[nodiscard]] std::uint16_t heartbeat() const { return client_.heartbeat(); }
+
+ private:
+  void poll();
+  void take_reading(const PlcPoll& poll);
+  void take_frame();
+  void write(bool stopped);
+  [[nodiscard]] PublicationContext context(bool stopped, SteadyTime now) const;
+  void publish_view(SteadyTime now);
+  void note_write(const PlcWrite& written);
+
+  Exchange& exchange_;
+  Pulse& pulse_;
+  PlcConfig config_;
+  PlcClient client_;
+  JointGate gate_;
+  Publication publication_;
+  CommandLatch command_;
+  PlcWatch watch_;
+  StateLog state_log_;
+  PlcView view_;
+  std::uint64_t frame_sequence_ = 0;
+  std::optional<FrameDone> unwritten_;  // the newest frame, until it stands in the registers
+  std::string reason_;                  // the newest frame's
+  SteadyTime last_written_{};
+  std::atomic<bool> last_write_ = true;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,65 @@
+// The thread that listens: datagrams of every LiDAR -> scans for the tracker.
+//
+// Waits with epoll, so it costs nothing while nothing comes. A burst or a flood is taken in bounded
+// bites, between which finished scans are handed over: the newest scan wins. Never throws on what it
+// receives; an unusable socket throws, which ends the service in order.
+// Thread rule: run() in a thread of its own; construct and destroy in the owner's.
+#pragma once
+
+#include <stop_token>
+#include <vector>
+
+#include "daemon/app/exchange.hpp"
+#include "daemon/app/lidar_watch.hpp"
+#include "daemon/app/thread_watch.hpp"
+#include "daemon/config/config.hpp"
+#include "lidar_drivers/datagram_router.hpp"
+#include "lidar_drivers/scan_builder.hpp"
+#include "lidar_drivers/udp_source.hpp"
+
+namespace hulltrack {
+
+class RxThread {
+ public:
+  /// Opens the sockets. Throws std::runtime_error with one line (port in use, address not of this host,
+  /// calibration unreadable). References must outlive this object.
+  RxThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log);
+  ~RxThread();
+
+  void run(std::stop_token stop);
+
+ private:
+  /// What of a socket's counters has been passed on.
+  struct SocketMemory {
+    std::uint64_t foreign = 0;
+    std::uint64_t kernel_overflows = 0;
+  };
+
+  void wait();
+  void receive(std::size_t socket);
+  void pass_on_counters(std::size_t socket);
+  void hand_over_scans();
+  void look_at_lidars(SteadyTime now);
+  void add_figures();
+  [[nodiscard]] LidarEvidence evidence(std::size_t lidar) const;
+
+  Exchange& exchange_;
+  Pulse& pulse_;
+  LogSink& log_;
+  std::vector<LidarConfig> lidars_;
+  std::vector<UdpSource> sockets_;
+  std::vector<SocketMemory> memories_;
+  std::vector<std::size_t> socket_of_;  // LiDAR -> socket
+  DatagramRouter router_;
+  ScanBuilder builder_;
+  std::vector<LidarWatch> watches_;
+  ConditionLog dropped_log_;
+  RecentGrowth dropped_grows_;
+  std::uint64_t dropped_ = 0;
+  SteadyTime last_received_{};
+  SteadyTime next_look_{};
+  Figures told_;  // running totals already on the board
+  int epoll_ = -1;
+};
+
+}  // namespace hulltrack

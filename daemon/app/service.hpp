@@ -1,0 +1,58 @@
+// The service's life: start, signals, reload, supervision, and what the outside is told.
+//
+// Runs in the main thread, ten turns a second. SIGTERM and SIGINT end it with a last write of health 0,
+// state 7; SIGHUP reads the files again in a thread of its own and swaps only when all of them are good.
+// The watchdog is fed only while every thread makes progress.
+// Failure: an exit code, after one line in the log.
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "daemon/app/figures.hpp"
+#include "daemon/app/mailbox.hpp"
+#include "daemon/app/notifier.hpp"
+#include "daemon/app/prepare.hpp"
+#include "daemon/app/session.hpp"
+#include "daemon/app/signals.hpp"
+#include "daemon/app/syslog_sink.hpp"
+
+namespace hulltrack {
+
+class Service {
+ public:
+  /// References must outlive this object. `config_file` is read again on SIGHUP.
+  Service(std::filesystem::path config_file, Prepared prepared, Signals& signals, SyslogSink& log);
+
+  /// Returns when the service has ended: the exit code.
+  int run();
+
+ private:
+  void start_session(const Prepared& prepared);
+  void turn(SteadyTime now);
+  void begin_reload();
+  void finish_reload();
+  void swap_to(Prepared next);
+  void supervise(SteadyTime now);
+  void report(SteadyTime now);
+
+  std::filesystem::path config_file_;
+  Prepared prepared_;
+  Signals& signals_;
+  SyslogSink& log_;
+  Notifier notifier_;
+  Mailbox<std::optional<std::string>> failure_;  // a thread's, once it has ended
+  std::unique_ptr<Session> session_;
+  std::uint16_t heartbeat_ = 0;
+  std::future<Preparation> reload_;
+  bool reload_again_ = false;
+  bool stopping_ = false;
+  std::optional<std::string> overdue_;  // thread that the log has been told of
+  Figures minute_;
+  SteadyTime second_began_{};
+  SteadyTime minute_began_{};
+};
+
+}  // namespace hulltrack

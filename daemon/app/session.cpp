@@ -1,0 +1,43 @@
+#include "daemon/app/session.hpp"
+
+#include "daemon/app/live_time.hpp"
+
+namespace hulltrack {
+namespace {
+
+/// A turn of any loop takes some 100 ms at most; five times that is a hang.
+constexpr Nanoseconds kTurnLimit = std::chrono::milliseconds(500);
+
+/// Beside that, a turn of the plc thread may wait for three replies: poll, read-back, write.
+Nanoseconds plc_turn_limit(const PlcConfig& plc) { return kTurnLimit + 3 * plc.response_timeout; }
+
+}  // namespace
+
+Session::Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailure on_failure,
+                 std::uint16_t heartbeat)
+    : rx_(prepared.config, exchange_, watch_.add("rx", kTurnLimit, steady_now()), log),
+      track_(prepared.config, prepared.map, exchange_, watch_.add("track", kTurnLimit, steady_now())),
+      plc_(prepared.config, exchange_, watch_.add("plc", plc_turn_limit(prepared.config.plc), steady_now()),
+           log, heartbeat),
+      plc_runner_(
+          "plc", [this](std::stop_token stop) { plc_.run(stop); }, on_failure,
+          [this] { exchange_.plc_bell.ring(); }),
+      track_runner_(
+          "track", [this](std::stop_token stop) { track_.run(stop); }, on_failure,
+          [this] { exchange_.track_bell.ring(); }),
+      rx_runner_(
+          "rx", [this](std::stop_token stop) { rx_.run(stop); }, on_failure) {}
+
+Session::~Session() { end(Ending::for_good); }
+
+std::uint16_t Session::end(Ending ending) {
+  rx_runner_.stop();
+  track_runner_.stop();
+  if (ending == Ending::for_reload) {
+    plc_.leave_without_last_write();
+  }
+  plc_runner_.stop();
+  return plc_.heartbeat();
+}
+
+}  // namespace hulltrack

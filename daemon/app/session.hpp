@@ -1,0 +1,50 @@
+// One configuration in force: its threads, what they share, and their orderly end.
+//
+// A reload ends one session and begins the next. Starts rx, track and plc when constructed; stops them in
+// that order, so that the last write of the plc thread knows everything.
+// Thread rule: owned by the main thread. Failure: the constructor throws std::runtime_error with one line
+// (port in use ...), before anything runs; later failures of a thread are told to `on_failure`.
+#pragma once
+
+#include "daemon/app/exchange.hpp"
+#include "daemon/app/guarded_thread.hpp"
+#include "daemon/app/plc_thread.hpp"
+#include "daemon/app/prepare.hpp"
+#include "daemon/app/rx_thread.hpp"
+#include "daemon/app/thread_watch.hpp"
+#include "daemon/app/track_thread.hpp"
+
+namespace hulltrack {
+
+class Session {
+ public:
+  enum class Ending {
+    for_good,    // the last write says health 0, state 7
+    for_reload,  // the next session goes on writing
+  };
+
+  /// `heartbeat`: the last one written, for the PLC to see an unbroken count.
+  Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailure on_failure,
+          std::uint16_t heartbeat);
+  /// Ends for good unless end() was called before.
+  ~Session();
+
+  /// Stops the threads and gives the last heartbeat written.
+  std::uint16_t end(Ending ending);
+
+  [[nodiscard]] const ThreadWatch& watch() const { return watch_; }
+  [[nodiscard]] WriteBlock registers() const { return exchange_.registers.get(); }
+  [[nodiscard]] Figures take_figures() { return exchange_.figures.take(); }
+
+ private:
+  Exchange exchange_;
+  ThreadWatch watch_;
+  RxThread rx_;
+  TrackThread track_;
+  PlcThread plc_;
+  GuardedThread plc_runner_;
+  GuardedThread track_runner_;
+  GuardedThread rx_runner_;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,71 @@
+#include "daemon/app/track_thread.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/app/live_time.hpp"
+
+namespace hulltrack {
+namespace {
+
+/// Longest sleep without a ring: bounds how seldom the watch hears of this thread.
+constexpr std::chrono::milliseconds kLongestWait{100};
+
+/// Joint samples further apart than this bracket nothing, so waiting longer is in vain (ICD 2.1).
+constexpr Nanoseconds kJointPatience = JointHistory::kMaxGap;
+
+}  // namespace
+
+TrackThread::TrackThread(const Config& config, std::shared_ptr<const HullMap> map, Exchange& exchange,
+                         Pulse& pulse)
+    : exchange_(exchange), pulse_(pulse), pipeline_(config, std::move(map)) {}
+
+void TrackThread::run(std::stop_token stop) {
+  while (!stop.stop_requested()) {
+    pulse_.beat(steady_now());
+    if (const Scan* scan = exchange_.scans.take()) {
+      await_joints(*scan, stop);
+      process(*scan);
+    } else {
+      exchange_.track_bell.wait_until(steady_now() + kLongestWait);
+    }
+  }
+}
+
+void TrackThread::await_joints(const Scan& scan, const std::stop_token& stop) {
+  const SteadyTime deadline = live_steady_time(scan.last_firing) + kJointPatience;
+  while (!stop.stop_requested()) {
+    const SteadyTime now = steady_now();
+    pulse_.beat(now);
+    exchange_.joints.drain_into(joints_);
+    const JointHistory::Lookup lookup = joints_.covers(scan.first_firing, scan.last_firing);
+    const bool may_come =
+        lookup == JointHistory::Lookup::after_newest || lookup == JointHistory::Lookup::empty;
+    if (!may_come || now >= deadline || exchange_.scans.has_fresh()) {
+      return;
+    }
+    exchange_.track_bell.wait_until(std::min(deadline, now + kLongestWait));
+  }
+}
+
+void TrackThread::process(const Scan& scan) {
+  FrameReport report = pipeline_.process(scan, joints_, inputs());
+  const SteadyTime done = steady_now();
+  Figures figures;
+  figures.frames = 1;
+  figures.processing_ms.add(to_milliseconds(report.processing));
+  if (report.track.metrics.valid) {
+    figures.q1_m.add(report.track.metrics.q1);
+  }
+  exchange_.figures.add(figures);
+  exchange_.frame.put({++sequence_, std::move(report.track), scan.last_received, done});
+  exchange_.plc_bell.ring();
+}
+
+FrameInputs TrackThread::inputs() {
+  const PlcView plc = exchange_.plc.get();
+  const bool reacquire = plc.reacquire_edges != std::exchange(reacquire_edges_, plc.reacquire_edges);
+  return {.hold = plc.hold, .reacquire = reacquire, .plc_faults = plc.standing};
+}
+
+}  // namespace hulltrack

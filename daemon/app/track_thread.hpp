@@ -1,0 +1,37 @@
+// The thread that tracks: newest scan + joints that bracket it -> one frame's result.
+//
+// A scan waits for the joint samples after its last packet, but not for long: until they cannot come any
+// more (a gap, scan end + 250 ms) or a newer scan is there. It is processed in any case; without joints
+// the tracker says so. Thread rule: run() in a thread of its own. Latency: a result is announced at once.
+#pragma once
+
+#include <memory>
+#include <stop_token>
+
+#include "daemon/app/exchange.hpp"
+#include "daemon/app/frame_pipeline.hpp"
+#include "daemon/app/thread_watch.hpp"
+
+namespace hulltrack {
+
+class TrackThread {
+ public:
+  /// References must outlive this object; `map` as for HullTracker.
+  TrackThread(const Config& config, std::shared_ptr<const HullMap> map, Exchange& exchange, Pulse& pulse);
+
+  void run(std::stop_token stop);
+
+ private:
+  void await_joints(const Scan& scan, const std::stop_token& stop);
+  void process(const Scan& scan);
+  [[nodiscard]] FrameInputs inputs();
+
+  Exchange& exchange_;
+  Pulse& pulse_;
+  FramePipeline pipeline_;
+  JointHistory joints_;
+  std::uint32_t reacquire_edges_ = 0;
+  std::uint64_t sequence_ = 0;
+};
+
+}  // namespace hulltrack

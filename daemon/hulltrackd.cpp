@@ -1,0 +1,105 @@
+// The main of `hulltrackd`, the service: command line, start-up errors, exit codes.
+//
+// 0 stopped as asked, 1 it failed, 2 wrong command line, 78 an error in the configuration, a calibration or
+// the map. Start-up problems go to standard error, where the service manager collects them.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "daemon/app/prepare.hpp"
+#include "daemon/app/service.hpp"
+#include "daemon/app/signals.hpp"
+#include "daemon/app/syslog_sink.hpp"
+#include "daemon/config/read_config.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr int kExitFailed = 1;
+constexpr int kExitUsage = 2;
+constexpr int kExitConfig = 78;  // EX_CONFIG of sysexits.h; RestartPreventExitStatus= of the unit
+
+struct Options {
+  std::string config = "/etc/hulltrackd/hulltrackd.toml";
+  bool check_config = false;
+  bool print_config = false;
+  bool to_stderr = false;
+};
+
+int refuse(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) {
+    std::fprintf(stderr, "%s\n", to_string(problem).c_str());
+  }
+  return kExitConfig;
+}
+
+int check(const Prepared& prepared, const std::string& file) {
+  std::printf("%s: good: %zu LiDAR(s), map %s with %zu points\n", file.c_str(), prepared.config.lidars.size(),
+              prepared.config.map_file.c_str(), prepared.map->cloud_H().size());
+  return 0;
+}
+
+int serve(const Options& options, Prepared prepared) {
+  Signals signals;  // before the log's threads, which inherit the mask
+  SyslogSink log(prepared.config.log, options.to_stderr || isatty(STDERR_FILENO) == 1);
+  try {
+    return Service(options.config, std::move(prepared), signals, log).run();
+  } catch (const std::exception& error) {
+    log.write(LogLevel::error, error.what());
+    std::fprintf(stderr, "hulltrackd: %s\n", error.what());
+    return kExitFailed;
+  }
+}
+
+int run(const Options& options) {
+  if (options.print_config) {
+    const ConfigReading reading = read_config(options.config, lidar_model_names());
+    if (!reading.config) {
+      return refuse(reading.problems);
+    }
+    std::fputs(print_config(*reading.config).c_str(), stdout);
+    return 0;
+  }
+  Preparation preparation = prepare(options.config);
+  if (!preparation.prepared) {
+    return refuse(preparation.problems);
+  }
+  return options.check_config ? check(*preparation.prepared, options.config)
+                              : serve(options, std::move(*preparation.prepared));
+}
+
+}  // namespace
+}  // namespace hulltrack
+
+int main(int argc, char** argv) {
+  using namespace hulltrack;
+  Options options;
+  CLI::App app{"Tracks a moored ship's hull with the LiDAR on a ship loader and tells the loader's PLC."};
+  app.name("hulltrackd");
+  app.set_version_flag("--version", "hulltrackd " HULLTRACK_VERSION);
+  app.add_option("--config", options.config, "Configuration file, hulltrackd.toml(5)")
+      ->type_name("FILE")
+      ->capture_default_str();
+  auto* check = app.add_flag("--check-config", options.check_config,
+                             "Read everything the service would read, name every problem, and exit");
+  app.add_flag("--print-config", options.print_config, "Print the values in force as TOML, and exit")
+      ->excludes(check);
+  app.add_flag("--stderr", options.to_stderr, "Log to standard error too, as on a terminal");
+  app.footer(
+      "Manual: hulltrackd(8). Exit codes: 0 stopped, 1 failed, 2 command line, 78 configuration or map.");
+  try {
+    app.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& wrong) {
+    std::fprintf(stderr, "hulltrackd: %s\nTry: hulltrackd --help\n", wrong.what());
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "hulltrackd: %s\n", error.what());
+    return kExitFailed;
+  }
+}
