@@ -1,0 +1,169 @@
+#include "daemon/config/cross_rules.hpp"
+
+#include <algorithm>
+
+#include "daemon/config/value_text.hpp"
+
+namespace hulltrack {
+namespace {
+
+using Broken = std::vector<BrokenRule>;
+
+constexpr int kRegistersPerRead = 125;  // Modbus Application Protocol V1.1b3, 6.3
+constexpr int kWriteRegisters = 40;
+constexpr int kAddresses = 65536;
+
+/// Registers that one value of [plc.read] occupies, as offsets.
+struct Occupied {
+  std::vector<std::string> keys;  // that say where and how many
+  int first;
+  int count;
+  [[nodiscard]] int end() const { return first + count; }
+  [[nodiscard]] std::string text() const {
+    return count == 1 ? "register " + std::to_string(first)
+                      : "registers " + std::to_string(first) + " and " + std::to_string(first + 1);
+  }
+};
+
+int width(RegisterType type) { return type == RegisterType::int16 || type == RegisterType::uint16 ? 1 : 2; }
+
+Occupied joint_registers(const std::string& section, const JointRegister& joint) {
+  return {{section + ".offset", section + ".type"}, joint.offset, width(joint.type)};
+}
+
+/// Whether the PLC has a heartbeat is said by its timeout (hulltrackd.toml(5)).
+std::vector<Occupied> occupied_registers(const PlcConfig& plc) {
+  const PlcReadConfig& read = plc.read;
+  std::vector<Occupied> all = {joint_registers("plc.read.travel", read.travel),
+                               joint_registers("plc.read.slew", read.slew),
+                               joint_registers("plc.read.luff", read.luff)};
+  if (plc.heartbeat_timeout > Nanoseconds{0}) {
+    all.push_back({{"plc.read.heartbeat"}, read.heartbeat, 1});
+    if (read.heartbeat_tail >= 0) {
+      all.push_back({{"plc.read.heartbeat_tail"}, read.heartbeat_tail, 1});
+    }
+  }
+  if (read.command >= 0) {
+    all.push_back({{"plc.read.command"}, read.command, 1});
+  }
+  return all;
+}
+
+std::vector<std::string> joined(std::vector<std::string> keys, const std::vector<std::string>& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+std::string addresses(int first, int count) {
+  return std::to_string(first) + " to " + std::to_string(first + count - 1);
+}
+
+void check_registers(const PlcConfig& plc, Broken& broken) {
+  const auto all = occupied_registers(plc);
+  std::vector<std::string> all_keys;
+  int count = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all_keys = joined(all_keys, all[i].keys);
+    count = std::max(count, all[i].end());
+    if (all[i].end() > kRegistersPerRead) {
+      broken.push_back({all[i].keys, "takes " + all[i].text() + "; one read carries offsets 0 to 124"});
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (all[i].first < all[j].end() && all[j].first < all[i].end()) {
+        broken.push_back({joined(all[i].keys, all[j].keys),
+                          "takes " + all[i].text() + ", which " + all[j].keys.front() + " takes too (" +
+                              all[j].text() + "); give each value registers of its own"});
+      }
+    }
+  }
+  const int read_base = plc.read.base;
+  const int write_base = plc.write.base;
+  if (read_base + count > kAddresses) {
+    broken.push_back(
+        {{"plc.read.base"},
+         "puts the read block at addresses " + addresses(read_base, count) + "; the last address is 65535"});
+  }
+  if (write_base + kWriteRegisters > kAddresses) {
+    broken.push_back({{"plc.write.base"},
+                      "puts the write block at addresses " + addresses(write_base, kWriteRegisters) +
+                          "; a base of 65496 at most lets its 40 registers fit"});
+  }
+  if (read_base < write_base + kWriteRegisters && write_base < read_base + count) {
+    broken.push_back({joined({"plc.write.base", "plc.read.base"}, all_keys),
+                      "puts the write block at addresses " + addresses(write_base, kWriteRegisters) +
+                          ", over the read block at " + addresses(read_base, count) +
+                          "; move one of them so that they do not overlap"});
+  }
+}
+
+void check_joint(const std::string& section, const JointRegister& joint, Broken& broken) {
+  if (joint.min >= joint.max) {
+    broken.push_back({{section + ".min", section + ".max"},
+                      "is " + number_text(joint.min) + ", not below max = " + number_text(joint.max) +
+                          "; min must be less than max"});
+  }
+}
+
+void check_plc(const PlcConfig& plc, Broken& broken) {
+  check_registers(plc, broken);
+  check_joint("plc.read.travel", plc.read.travel, broken);
+  check_joint("plc.read.slew", plc.read.slew, broken);
+  check_joint("plc.read.luff", plc.read.luff, broken);
+  if (plc.heartbeat_timeout > Nanoseconds{0} && plc.heartbeat_timeout <= plc.poll_period) {
+    broken.push_back(
+        {{"plc.heartbeat_timeout_ms", "plc.poll_period_ms"},
+         "is not longer than poll_period_ms, so that every poll would find the data stale; make it "
+         "several poll periods, or 0 for a PLC without a heartbeat"});
+  }
+}
+
+/// Two sockets that one and the same datagram could reach.
+bool collide(const LidarConfig& a, const LidarConfig& b) {
+  constexpr const char* kAll = "0.0.0.0";
+  const bool same_address = a.bind == b.bind || a.bind == kAll || b.bind == kAll;
+  const bool same_source = a.source == b.source || a.source.empty() || b.source.empty();
+  return a.port == b.port && same_address && same_source;
+}
+
+void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
+  for (std::size_t i = 0; i < lidars.size(); ++i) {
+    const std::string section = "lidar." + std::to_string(i);
+    const LidarConfig& lidar = lidars[i];
+    if (lidar.min_range >= lidar.max_range) {
+      broken.push_back({{section + ".min_range", section + ".max_range"},
+                        "is " + number_text(lidar.min_range) + ", not below max_range = " +
+                            number_text(lidar.max_range) + "; min_range must be less than max_range"});
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string other = "lidar." + std::to_string(j);
+      if (lidar.name == lidars[j].name) {
+        broken.push_back(
+            {{section + ".name", other + ".name"},
+             "is \"" + lidar.name + "\", the name of another LiDAR too; give each a name of its own"});
+      }
+      if (collide(lidar, lidars[j])) {
+        broken.push_back({{section + ".port", section + ".source", section + ".bind", other + ".port",
+                           other + ".source", other + ".bind"},
+                          "is " + std::to_string(lidar.port) + ", where LiDAR \"" + lidars[j].name +
+                              "\" listens too; give each a port of its own, or a `source` to each of them"});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<BrokenRule> check_cross_rules(const Config& config) {
+  Broken broken;
+  check_plc(config.plc, broken);
+  check_lidars(config.lidars, broken);
+  const HealthConfig& health = config.tracker.health;
+  if (health.q1_healthy > health.q1_lost) {
+    broken.push_back({{"health.q1_healthy", "health.q1_lost"},
+                      "is " + number_text(health.q1_healthy) + ", above q1_lost = " +
+                          number_text(health.q1_lost) + "; it must be at most q1_lost"});
+  }
+  return broken;
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,132 @@
+#include "daemon/config/read_config.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "daemon/config/cross_rules.hpp"
+#include "daemon/config/document_reader.hpp"
+
+namespace hulltrack {
+namespace {
+
+// Far more than any real file; they bound the depth of what the TOML parser builds.
+constexpr std::size_t kMaxFile = 1 << 20;
+constexpr std::size_t kMaxLine = 4096;
+
+/// "lidar.0.port" -> "lidar.port", as a person writes it.
+std::string without_index(const std::string& key) {
+  std::string out;
+  std::istringstream parts(key);
+  for (std::string part; std::getline(parts, part, '.');) {
+    if (part.find_first_not_of("0123456789") != std::string::npos) {
+      out += (out.empty() ? "" : ".") + part;
+    }
+  }
+  return out;
+}
+
+/// The line of the first key that stands in the file, else of the nearest table around them.
+int line_to_blame(const BrokenRule& rule, const Document& document) {
+  for (const std::string& key : rule.keys) {
+    if (const auto found = document.lines.find(key); found != document.lines.end()) {
+      return found->second;
+    }
+  }
+  for (std::string place = rule.keys.front(); place.find('.') != std::string::npos;) {
+    place.erase(place.rfind('.'));
+    if (const auto found = document.lines.find(place); found != document.lines.end()) {
+      return found->second;
+    }
+  }
+  return 1;
+}
+
+void add_broken_rules(Document& document, const std::string& file) {
+  for (const BrokenRule& rule : check_cross_rules(document.config)) {
+    const bool known_bad = std::any_of(rule.keys.begin(), rule.keys.end(), [&](const std::string& key) {
+      return document.bad_keys.contains(key);
+    });
+    if (!known_bad) {
+      document.problems.push_back(
+          {file, line_to_blame(rule, document), without_index(rule.keys.front()) + ": " + rule.message});
+    }
+  }
+}
+
+/// The first line that is too long, or nothing.
+std::optional<Problem> find_long_line(std::string_view text, const std::string& file) {
+  int line = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end - begin > kMaxLine) {
+      return Problem{file, line,
+                     "the line is longer than " + std::to_string(kMaxLine) + " characters; break it"};
+    }
+    begin = end + 1;
+  }
+  return std::nullopt;
+}
+
+void resolve_paths(Config& config, const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto folder = std::filesystem::absolute(file, ignored).parent_path();
+  config.map_file = (folder / config.map_file).lexically_normal();
+  for (LidarConfig& lidar : config.lidars) {
+    if (!lidar.calibration.empty()) {
+      lidar.calibration = (folder / lidar.calibration).lexically_normal().string();
+    }
+  }
+}
+
+}  // namespace
+
+ConfigReading parse_config(std::string_view text, const std::filesystem::path& file,
+                           const std::vector<std::string>& models) {
+  const std::string name = file.string();
+  if (text.size() > kMaxFile) {
+    return {std::nullopt, {{name, 0, "is larger than 1 MiB; is this the configuration?"}}};
+  }
+  if (const auto long_line = find_long_line(text, name)) {
+    return {std::nullopt, {*long_line}};
+  }
+  Document document = read_document(text, name, models);
+  if (document.lines.empty()) {  // not even TOML
+    return {std::nullopt, std::move(document.problems)};
+  }
+  add_broken_rules(document, name);
+  if (!document.problems.empty()) {
+    std::stable_sort(document.problems.begin(), document.problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.line < b.line; });
+    return {std::nullopt, std::move(document.problems)};
+  }
+  resolve_paths(document.config, file);
+  return {std::move(document.config), {}};
+}
+
+ConfigReading read_config(const std::filesystem::path& file, const std::vector<std::string>& models) {
+  const auto failed = [&](const std::string& why) {
+    return ConfigReading{std::nullopt,
+                         {{file.string(), 0, "cannot be read: " + why + "; is this the right file?"}}};
+  };
+  std::error_code code;
+  if (std::filesystem::is_directory(file, code)) {
+    return failed("it is a folder");
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return failed(std::strerror(errno));
+  }
+  std::string text(kMaxFile + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) {
+    return failed(std::strerror(errno));
+  }
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return parse_config(text, file, models);
+}
+
+}  // namespace hulltrack
