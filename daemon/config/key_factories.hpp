@@ -69,86 +69,84 @@ inline Key number(std::string name, double& member, double min, double max, cons
 
 /// An angle in degrees that has been through radians, without the digits that this cost it.
 [[nodiscard]] inline double tidy_degrees(double rad) {
-  return std::round(degrees(rad) * 1e10) / 1e10 + 0.0;  // never -0 }
+  return std::round(degrees(rad) * 1e10) / 1e10 + 0.0;  // never -0
+}
 
-  /// A member in radians that the file gives in degrees.
-  inline Key angle(std::string name, double& member, double min_deg, double max_deg) {
-    Key key = number(std::move(name), member, min_deg, max_deg, "deg");
-    key.get = [&member] { return tidy_degrees(member); };
-    key.set = [&member](const ConfigValue& value) { member = radians(std::get<double>(value)); };
-    return key;
-  }
+/// A member in radians that the file gives in degrees.
+inline Key angle(std::string name, double& member, double min_deg, double max_deg) {
+  Key key = number(std::move(name), member, min_deg, max_deg, "deg");
+  key.get = [&member] { return tidy_degrees(member); };
+  key.set = [&member](const ConfigValue& value) { member = radians(std::get<double>(value)); };
+  return key;
+}
 
-  inline Key flag(std::string name, bool& member) {
-    return {.name = std::move(name),
-            .allowed = "true or false",
-            .legal = [](const ConfigValue&) { return true; },
-            .get = [&member] { return member; },
-            .set = [&member](const ConfigValue& value) { member = std::get<bool>(value); }};
-  }
+inline Key flag(std::string name, bool& member) {
+  return {.name = std::move(name),
+          .allowed = "true or false",
+          .legal = [](const ConfigValue&) { return true; },
+          .get = [&member] { return member; },
+          .set = [&member](const ConfigValue& value) { member = std::get<bool>(value); }};
+}
 
-  inline Key text(std::string name, std::string & member, std::string allowed,
-                  std::function<bool(const std::string&)> legal) {
-    return {.name = std::move(name),
-            .allowed = std::move(allowed),
-            .legal = [legal = std::move(legal)](
-                         const ConfigValue& value) { return legal(std::get<std::string>(value)); },
-            .get = [&member] { return member; },
-            .set = [&member](const ConfigValue& value) { member = std::get<std::string>(value); }};
-  }
+inline Key text(std::string name, std::string& member, std::string allowed,
+                std::function<bool(const std::string&)> legal) {
+  return {.name = std::move(name),
+          .allowed = std::move(allowed),
+          .legal = [legal = std::move(legal)](
+                       const ConfigValue& value) { return legal(std::get<std::string>(value)); },
+          .get = [&member] { return member; },
+          .set = [&member](const ConfigValue& value) { member = std::get<std::string>(value); }};
+}
 
-  /// One of `words`; the member's value is the word's index.
-  template <typename E>
-  requires std::is_enum_v<E> Key choice(std::string name, E & member,
-                                        std::span<const std::string_view> words) {
-    const auto index = [words](const ConfigValue& value) {
-      return std::find(words.begin(), words.end(), std::get<std::string>(value)) - words.begin();
-    };
-    return {.name = std::move(name),
-            .allowed = list_text(words),
-            .legal = [=](const ConfigValue& value) { return index(value) < std::ssize(words); },
-            .get = [&member, words] { return std::string(words[static_cast<std::size_t>(member)]); },
-            .set = [&member, index](const ConfigValue& value) { member = static_cast<E>(index(value)); },
-            .words = {words.begin(), words.end()}};
-  }
+/// One of `words`; the member's value is the word's index.
+template <typename E>
+requires std::is_enum_v<E> Key choice(std::string name, E& member, std::span<const std::string_view> words) {
+  const auto index = [words](const ConfigValue& value) {
+    return std::find(words.begin(), words.end(), std::get<std::string>(value)) - words.begin();
+  };
+  return {.name = std::move(name),
+          .allowed = list_text(words),
+          .legal = [=](const ConfigValue& value) { return index(value) < std::ssize(words); },
+          .get = [&member, words] { return std::string(words[static_cast<std::size_t>(member)]); },
+          .set = [&member, index](const ConfigValue& value) { member = static_cast<E>(index(value)); },
+          .words = {words.begin(), words.end()}};
+}
 
-  /// Three numbers, each within +-limit, seen through a getter and a setter of a vector.
-  template <typename Get, typename Set>
-  Key vector3(std::string name, double limit, const char* unit, Get get, Set set) {
-    return {.name = std::move(name),
-            .allowed =
-                "three numbers from " + number_text(-limit) + " to " + number_text(limit) + " (" + unit + ")",
-            .legal =
-                [limit](const ConfigValue& value) {
-                  const auto& numbers = std::get<Numbers>(value);
-                  return numbers.size() == 3 &&
-                         std::all_of(numbers.begin(), numbers.end(),
-                                     [limit](double n) { return std::abs(n) <= limit; });
-                },
-            .get =
-                [get] {
-                  const Eigen::Vector3d v = get();
-                  return Numbers(v.begin(), v.end());
-                },
-            .set =
-                [set](const ConfigValue& value) {
-                  const auto& numbers = std::get<Numbers>(value);
-                  set(Eigen::Vector3d(numbers[0], numbers[1], numbers[2]));
-                }};
-  }
+/// Three numbers, each within +-limit, seen through a getter and a setter of a vector.
+template <typename Get, typename Set>
+Key vector3(std::string name, double limit, const char* unit, Get get, Set set) {
+  return {.name = std::move(name),
+          .allowed =
+              "three numbers from " + number_text(-limit) + " to " + number_text(limit) + " (" + unit + ")",
+          .legal =
+              [limit](const ConfigValue& value) {
+                const auto& numbers = std::get<Numbers>(value);
+                return numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(),
+                                                          [limit](double n) { return std::abs(n) <= limit; });
+              },
+          .get =
+              [get] {
+                const Eigen::Vector3d v = get();
+                return Numbers(v.begin(), v.end());
+              },
+          .set =
+              [set](const ConfigValue& value) {
+                const auto& numbers = std::get<Numbers>(value);
+                set(Eigen::Vector3d(numbers[0], numbers[1], numbers[2]));
+              }};
+}
 
-  /// The two keys of an installation transform: { xyz = [..], rpy_deg = [..] }.
-  std::vector<Key> pose(Pose & member);
+/// The two keys of an installation transform: { xyz = [..], rpy_deg = [..] }.
+std::vector<Key> pose(Pose& member);
 
-  /// Six numbers x0,y0,z0,x1,y1,z1 with x0 <= x1 and so on.
-  [[nodiscard]] bool is_box(const Numbers& numbers);
-  inline constexpr const char* kBoxAllowed =
-      "six numbers [x0, y0, z0, x1, y1, z1], the lower corner first (m)";
+/// Six numbers x0,y0,z0,x1,y1,z1 with x0 <= x1 and so on.
+[[nodiscard]] bool is_box(const Numbers& numbers);
+inline constexpr const char* kBoxAllowed = "six numbers [x0, y0, z0, x1, y1, z1], the lower corner first (m)";
 
-  Key box(std::string name, Box & member);
-  /// A box, or an empty list for none.
-  Key optional_box(std::string name, std::optional<Box> & member);
-  /// A list of boxes.
-  Key boxes(std::string name, std::vector<std::array<double, 6>> & member, std::size_t most);
+Key box(std::string name, Box& member);
+/// A box, or an empty list for none.
+Key optional_box(std::string name, std::optional<Box>& member);
+/// A list of boxes.
+Key boxes(std::string name, std::vector<std::array<double, 6>>& member, std::size_t most);
 
 }  // namespace hulltrack::keys
