@@ -15,7 +15,10 @@ std::string program_name(const CLI::App& app) {
   return chosen.empty() ? "hulltrack" : "hulltrack " + chosen.front()->get_name();
 }
 
-void add_subcommands(CLI::App& app) { app.require_subcommand(1); }
+void add_subcommands(CLI::App& app) {
+  add_simulate(app);
+  app.require_subcommand(1);
+}
 
 int run(int argc, char** argv) {
   CLI::App app{"Tools around hulltrackd, the service that tracks a moored ship's hull for a ship loader."};

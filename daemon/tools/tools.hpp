@@ -27,4 +27,6 @@ class ToolError : public std::runtime_error {
   int exit_code_;
 };
 
+void add_simulate(CLI::App& app);
+
 }  // namespace hulltrack

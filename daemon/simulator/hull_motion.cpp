@@ -1,0 +1,74 @@
+#include "daemon/simulator/hull_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "daemon/simulator/random.hpp"
+
+namespace hulltrack {
+
+double run_distance(const Run& run, double t) {
+  const double elapsed = t - run.start;
+  if (elapsed <= 0.0 || run.distance <= 0.0) return 0.0;
+  // A run too short for its speed never reaches it.
+  const double peak = std::min(run.speed, std::sqrt(run.acceleration * run.distance));
+  const double ramp = peak / run.acceleration;
+  const double ramp_distance = 0.5 * peak * ramp;
+  if (elapsed < ramp) return 0.5 * run.acceleration * elapsed * elapsed;
+  const double cruise = (run.distance - 2.0 * ramp_distance) / peak;
+  if (elapsed < ramp + cruise) return ramp_distance + peak * (elapsed - ramp);
+  const double left = std::max(0.0, 2.0 * ramp + cruise - elapsed);
+  return run.distance - 0.5 * run.acceleration * left * left;
+}
+
+HullMotion::Waves HullMotion::waves(const Swing& swing, std::uint64_t seed, std::uint64_t stream) {
+  RandomStream random(seed, stream);
+  Waves result{};
+  double total = 0.0;
+  for (int i = 0; i < kSines; ++i) {
+    // Periods spread evenly in the logarithm and drawn within their share: no two alike.
+    const double share = (static_cast<double>(i) + random.uniform(0.1, 0.9)) / kSines;
+    const double period = swing.shortest * std::pow(swing.longest / swing.shortest, share);
+    Wave& wave = result.at(static_cast<std::size_t>(i));
+    wave = {random.uniform(0.4, 1.0), 2.0 * std::numbers::pi / period,
+            random.uniform(0.0, 2.0 * std::numbers::pi)};
+    total += wave.amplitude;
+  }
+  for (Wave& wave : result) wave.amplitude *= swing.amplitude / total;
+  return result;
+}
+
+HullMotion::HullMotion(const HullMotionConfig& config, const Eigen::Vector3d& reference_point_H,
+                       std::uint64_t seed)
+    : config_(config), reference_point_H_(reference_point_H) {
+  const std::array<Swing, 6> swings = {config.surge, config.sway,  config.heave,
+                                       config.roll,  config.pitch, config.yaw};
+  constexpr std::uint64_t kStream = 100;
+  for (std::size_t i = 0; i < swings.size(); ++i) waves_.at(i) = waves(swings.at(i), seed, kStream + i);
+}
+
+HullPose HullMotion::pose(double t) const {
+  std::array<double, 6> swing{};
+  for (std::size_t i = 0; i < swing.size(); ++i)
+    for (const Wave& wave : waves_[i])
+      swing[i] += wave.amplitude * std::sin(wave.angular_frequency * t + wave.phase);
+  HullPose pose{config_.start_displacement, config_.start_rpy};
+  pose.displacement += Eigen::Vector3d(swing[0], swing[1], swing[2] - config_.draft_rate * t);
+  pose.rpy += Eigen::Vector3d(swing[3], swing[4], swing[5]);
+  const double way = run_distance(config_.run, t);
+  pose.displacement += way * config_.run_direction;
+  if (config_.run.speed > 0.0) pose.rpy.z() += way / config_.run.speed * config_.run_yaw_rate;
+  return pose;
+}
+
+Pose HullMotion::transform(const HullPose& pose) const {
+  Pose T = Pose::Identity();
+  T.linear() = rotation_from_rpy(pose.rpy);
+  T.translation() = reference_point_H_ + pose.displacement - T.linear() * reference_point_H_;
+  return T;
+}
+
+Pose HullMotion::T_W_H(double t) const { return transform(pose(t)); }
+
+}  // namespace hulltrack

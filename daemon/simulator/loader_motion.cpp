@@ -1,0 +1,82 @@
+#include "daemon/simulator/loader_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "daemon/simulator/random.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr double kFirstMove = 3.0;     // s of rest at the beginning
+constexpr double kShortestPour = 1.5;  // s between two moves
+constexpr double kLongestPour = 7.0;
+
+/// A target inside the limits at least shortest_move away from where the axis is.
+double draw_target(const AxisLimits& axis, double from, RandomStream& random) {
+  double target = random.uniform(axis.low, axis.high);
+  while (std::abs(target - from) < axis.shortest_move) target = random.uniform(axis.low, axis.high);
+  return target;
+}
+
+}  // namespace
+
+double LoaderMotion::Move::duration() const {
+  const double distance = std::abs(to - from);
+  const double ramp = speed / acceleration;
+  if (distance < speed * ramp) return 2.0 * std::sqrt(distance / acceleration);
+  return distance / speed + ramp;
+}
+
+double LoaderMotion::Move::at(double t) const {
+  const double distance = std::abs(to - from);
+  const double total = duration();
+  const double elapsed = std::clamp(t - start, 0.0, total);
+  const double peak = std::min(speed, std::sqrt(distance * acceleration));
+  const double ramp = peak / acceleration;
+  double covered = 0.0;
+  if (elapsed < ramp) {
+    covered = 0.5 * acceleration * elapsed * elapsed;
+  } else if (elapsed < total - ramp) {
+    covered = peak * (elapsed - 0.5 * ramp);
+  } else {
+    const double left = total - elapsed;
+    covered = distance - 0.5 * acceleration * left * left;
+  }
+  return from + std::copysign(covered, to - from);
+}
+
+LoaderMotion::LoaderMotion(const LoaderLimits& limits, double duration, std::uint64_t seed) {
+  RandomStream random(seed, 200);
+  const auto inside = [&](const AxisLimits& axis) { return random.uniform(axis.low, axis.high); };
+  start_ = {inside(limits.travel), inside(limits.slew), inside(limits.luff)};
+  Joints now = start_;
+  double t = kFirstMove;
+  while (t < duration) {
+    double end = t;
+    const auto move = [&](Track& track, const AxisLimits& axis, double& position) {
+      const double target = draw_target(axis, position, random);
+      track.push_back({t, position, target, axis.speed, axis.acceleration});
+      position = target;
+      end = std::max(end, t + track.back().duration());
+    };
+    const double kind = random.uniform();
+    if (kind < 0.55) move(slew_, limits.slew, now.theta_r);
+    if (kind > 0.40 && kind < 0.75) move(luff_, limits.luff, now.theta_p);
+    if (kind > 0.65) move(travel_, limits.travel, now.d_x);
+    t = end + random.uniform(kShortestPour, kLongestPour);
+  }
+}
+
+double LoaderMotion::position(const Track& track, double start, double t) {
+  const auto next = std::upper_bound(track.begin(), track.end(), t,
+                                     [](double time, const Move& move) { return time < move.start; });
+  return next == track.begin() ? start : std::prev(next)->at(t);
+}
+
+Joints LoaderMotion::at(double t) const {
+  return {position(travel_, start_.d_x, t), position(slew_, start_.theta_r, t),
+          position(luff_, start_.theta_p, t)};
+}
+
+}  // namespace hulltrack

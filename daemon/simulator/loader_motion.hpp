@@ -1,0 +1,52 @@
+// Where are the loader's joints at time t? A loader at work: it travels, slews and luffs with trapezoidal
+// speed ramps, one or two axes at a time, and pours in between.
+//
+// Seconds from the first firing; m and rad. Every move keeps within `limits`. The whole run is planned at
+// construction from the seed; afterwards any time may be asked from any thread. Before the first and after
+// the last move the joints stand still. About 0.1 us.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kinematics/joints.hpp"
+
+namespace hulltrack {
+
+/// One axis: where it works, how fast it may go and speed up. m or rad.
+struct AxisLimits {
+  double low, high;
+  double speed, acceleration;
+  double shortest_move;  // a move below this is not worth it
+};
+
+struct LoaderLimits {
+  AxisLimits travel, slew, luff;
+};
+
+class LoaderMotion {
+ public:
+  /// Works for `duration` s, starting somewhere inside the limits.
+  LoaderMotion(const LoaderLimits& limits, double duration, std::uint64_t seed);
+
+  /// Parked: never moves.
+  explicit LoaderMotion(const Joints& parked) : start_(parked) {}
+
+  [[nodiscard]] Joints at(double t) const;
+
+ private:
+  struct Move {
+    double start;  // s
+    double from, to;
+    double speed, acceleration;
+    [[nodiscard]] double at(double t) const;
+    [[nodiscard]] double duration() const;
+  };
+  using Track = std::vector<Move>;
+  static double position(const Track& track, double start, double t);
+
+  Joints start_;
+  Track travel_, slew_, luff_;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,120 @@
+#include "daemon/simulator/sensor_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hulltrack {
+namespace {
+
+/// On a bracket beside the chute's head. The spin axis is turned 30 deg out of the boom's direction and dips
+/// 15 deg, so that the fan crosses the ship askew: decks, coaming sides and coaming ends are all in view,
+/// whichever way the boom is slewed. x of L points down. Over the whole working range the smallest
+/// eigenvalue of a VLP-16's point-to-plane normal matrix stays above 90 points' worth in translation
+/// (spin axis level and 60 deg out of the boom: 2); hulltrack(1) has the figures.
+Pose bracket() { return pose_from_xyz_rpy_deg({18.4, 1.9, -1.6}, {0.0, 105.0, -30.0}); }
+
+constexpr std::string_view kVlp16Density =
+    "# Q1 measures how dense the scan is on the hull. The lasers are 2 deg apart: lines 0.6 m apart at 17 "
+    "m,\n"
+    "# 0.9 m at metric_range, more on oblique faces. A map point lies anywhere between two lines, so that a "
+    "right\n"
+    "# pose has a Q1 of about an eighth of their distance: 0.11 to 0.15 m over the working range. The limits "
+    "leave\n"
+    "# a third on top for drop-outs before health goes, and more than double before the hull counts as "
+    "lost.\n";
+constexpr std::string_view kVlp32cDensity =
+    "# Q1 measures how dense the scan is on the hull. The lasers are 0.33 deg apart in the middle of the fan "
+    "and 4\n"
+    "# to 9 deg at its lower edge: a right pose has a Q1 of 0.06 to 0.12 m over the working range. The "
+    "limits leave\n"
+    "# a third on top for drop-outs before health goes, and more than double before the hull counts as "
+    "lost.\n";
+
+std::vector<SensorTraits> make_sensors() {
+  return {
+      {"velodyne_vlp16", bracket(), 1.0, 100.0, 50.0, 0.02, 0.0030, 0.0015, 0.20, 0.35, kVlp16Density},
+      {"velodyne_vlp32c", bracket(), 1.0, 120.0, 90.0, 0.02, 0.0030, 0.0015, 0.16, 0.30, kVlp32cDensity},
+  };
+}
+
+double reflectivity(Material material) {
+  switch (material) {
+    case Material::steel:
+      return 0.35;
+    case Material::dark_steel:
+      return 0.12;
+    case Material::white_paint:
+      return 0.70;
+    case Material::concrete:
+      return 0.40;
+    case Material::ore:
+      return 0.15;
+    case Material::glass:
+      return 0.06;
+    case Material::rubber:
+      return 0.05;
+    case Material::water:
+      return 0.01;
+  }
+  return 0.0;
+}
+
+double received_power(const RayHit& hit) {
+  const auto range = static_cast<double>(hit.distance);
+  return reflectivity(hit.material) * static_cast<double>(hit.cos_incidence) / (range * range);
+}
+
+}  // namespace
+
+const std::vector<SensorTraits>& simulated_sensors() {
+  static const std::vector<SensorTraits> all = make_sensors();
+  return all;
+}
+
+const SensorTraits* find_sensor(std::string_view model) {
+  const auto& all = simulated_sensors();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const SensorTraits& s) { return s.model == model; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+Point ray_within_beam(const SensorTraits& sensor, const Point& direction, RandomStream& random) {
+  const double radius = 0.5 * std::sqrt(random.uniform());
+  const double angle = 2.0 * std::numbers::pi * random.uniform();
+  const Point across =
+      Point(-direction.y(), direction.x(), 0.0F).normalized();  // towards growing angle about z
+  const Point along = direction.cross(across);
+  const auto a = static_cast<float>(radius * std::cos(angle) * sensor.divergence_azimuth);
+  const auto e = static_cast<float>(radius * std::sin(angle) * sensor.divergence_elevation);
+  return (direction + a * across + e * along).normalized();
+}
+
+sim::VelodyneReturn measure(const SensorTraits& sensor, const std::optional<RayHit>& middle,
+                            const std::optional<RayHit>& other, RandomStream& random) {
+  constexpr double kPulseLength = 0.9;  // m of range within which two echoes merge (6 ns)
+  constexpr double kSpeckle = 0.25;     // sigma of the received power's logarithm
+  constexpr double kDarkReflectivity = 0.10;
+  // How much of the pulse falls on the surface of the middle ray: at an edge any share.
+  const double share = random.uniform(0.3, 1.0);
+  const double speckle = std::exp(kSpeckle * random.gaussian());
+  const double noise = sensor.range_sigma * random.gaussian();
+
+  const double near_power = middle ? share * received_power(*middle) : 0.0;
+  const double far_power = other ? (1.0 - share) * received_power(*other) : 0.0;
+  const double power = (near_power + far_power) * speckle;
+  const double faintest = kDarkReflectivity / (sensor.range_of_dark * sensor.range_of_dark);
+  if (power < faintest) return {};
+
+  const double near_range = middle ? static_cast<double>(middle->distance) : 0.0;
+  const double far_range = other ? static_cast<double>(other->distance) : 0.0;
+  double range = near_power >= far_power ? near_range : far_range;
+  if (middle && other && std::abs(near_range - far_range) < kPulseLength)
+    range = (near_power * near_range + far_power * far_range) / (near_power + far_power);
+  range += noise;
+  if (range < sensor.min_range) return {};
+  const double brightness = std::clamp(100.0 * power * range * range, 1.0, 100.0);
+  return {range, static_cast<std::uint8_t>(brightness)};
+}
+
+}  // namespace hulltrack

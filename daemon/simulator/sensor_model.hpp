@@ -1,0 +1,48 @@
+// How does a LiDAR turn surfaces into returns? Range noise, beams that meet an edge, surfaces too dark, too
+// far or too oblique to be seen; and where on the boom each model is mounted.
+//
+// Metres and rad. Power falls with the square of the range and with the cosine of incidence (Lambert).
+// The beam is two rays: its middle and one drawn from its cross-section; where they meet surfaces a pulse
+// length or less apart the range lies between the two (mixed pixel), farther apart it is one of them.
+// Pure functions of their arguments and the random stream.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "daemon/simulator/random.hpp"
+#include "daemon/simulator/ray_scene.hpp"
+#include "lidar_drivers/sim/velodyne_encoder.hpp"
+
+namespace hulltrack {
+
+struct SensorTraits {
+  std::string_view model;     // of the model registry
+  Pose mount;                 // T_lidar: L -> B
+  double min_range;           // m
+  double max_range;           // m, what the configuration states
+  double range_of_dark;       // a head-on surface of 10 % reflectivity is just seen at this range, m
+  double range_sigma;         // m
+  double divergence_azimuth;  // full width of the beam, rad
+  double divergence_elevation;
+  // Limits of Q1 that suit the density of this sensor's scans on a ship 15 to 20 m below, and why.
+  double q1_healthy, q1_lost;  // m
+  std::string_view q1_reason;  // comment lines for the configuration
+};
+
+/// The models that can be simulated.
+[[nodiscard]] const std::vector<SensorTraits>& simulated_sensors();
+/// nullptr when there is none of that name.
+[[nodiscard]] const SensorTraits* find_sensor(std::string_view model);
+
+/// A direction within the beam around `direction` (unit), drawn evenly over its cross-section.
+[[nodiscard]] Point ray_within_beam(const SensorTraits& sensor, const Point& direction, RandomStream& random);
+
+/// What the receiver reports of a beam whose two rays met these surfaces (or none).
+[[nodiscard]] sim::VelodyneReturn measure(const SensorTraits& sensor, const std::optional<RayHit>& middle,
+                                          const std::optional<RayHit>& other, RandomStream& random);
+
+}  // namespace hulltrack

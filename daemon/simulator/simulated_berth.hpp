@@ -1,0 +1,90 @@
+// One simulation: what the LiDAR sends, what the PLC presents and where the hull really is, at any time.
+//
+// Time 0 is the first firing of datagram 0; in a recording it stands for kEpoch. Poses as in ICD 1, joints
+// in m and rad. Everything is a pure function of (options, datagram number or time): the same options give
+// the same bytes on any number of threads, and const calls may come from any thread.
+// Failure: create() says what is unknown. Memory: some MB; a datagram of 384 rays takes about 0.5 ms.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/tracking/tracker_config.hpp"
+#include "daemon/simulator/berth_world.hpp"
+#include "daemon/simulator/plc_model.hpp"
+#include "daemon/simulator/scenario.hpp"
+#include "daemon/simulator/sensor_model.hpp"
+#include "lidar_drivers/lidar_config.hpp"
+
+namespace hulltrack {
+
+struct SimulationOptions {
+  std::string scenario = "berth";
+  std::string lidar_model = "velodyne_vlp16";
+  std::uint64_t seed = 1;
+  int frames = 0;                // 0 = the scenario's own number; at most kMaxFrames
+  std::optional<Joints> parked;  // the loader stands here and never moves
+  EncoderConfig encoders;
+};
+
+class SimulatedBerth {
+ public:
+  static constexpr int kMaxFrames = 36'000;  // an hour
+  static constexpr Nanoseconds kFramePeriod = std::chrono::milliseconds(100);
+  /// 2026-01-01 07:10:00 UTC.
+  static constexpr MeasurementTime kEpoch{std::chrono::seconds(1'767'251'400)};
+  using Packet = std::array<std::uint8_t, velodyne::kPacketBytes>;
+
+  [[nodiscard]] static Result<std::unique_ptr<SimulatedBerth>> create(const SimulationOptions& options);
+
+  [[nodiscard]] int frames() const { return frames_; }
+  [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
+  [[nodiscard]] const SensorTraits& sensor() const { return *sensor_; }
+  [[nodiscard]] const SimulationOptions& options() const { return options_; }
+
+  /// Datagrams that lie wholly within the first frames() frame periods.
+  [[nodiscard]] std::uint64_t packets() const { return packets_; }
+  /// Time of the datagram's last firing: when it is sent.
+  [[nodiscard]] Nanoseconds sent(std::uint64_t packet) const { return encoder_.last_firing(packet); }
+  [[nodiscard]] Packet packet(std::uint64_t number) const;
+  /// What the sensor measured for each firing of the datagram, in wire order; range 0 = nothing.
+  [[nodiscard]] std::vector<sim::VelodyneReturn> returns(std::uint64_t number) const;
+  [[nodiscard]] const sim::VelodyneEncoder& encoder() const { return encoder_; }
+
+  [[nodiscard]] HullPose truth(Nanoseconds time) const;
+  [[nodiscard]] Pose T_W_H(Nanoseconds time) const;
+  [[nodiscard]] Joints true_joints(Nanoseconds time) const;
+  [[nodiscard]] PlcPresented plc(Nanoseconds time) const;
+  [[nodiscard]] const BerthWorld& world() const { return *world_; }
+
+  /// The ship of the map in H, empty; and the ship that really lies there, with its cargo.
+  [[nodiscard]] TriangleMesh map_mesh_H() const;
+  [[nodiscard]] TriangleMesh hull_mesh_H() const;
+  [[nodiscard]] Cloud map() const;
+
+  /// What a commissioning engineer would have put into the configuration.
+  [[nodiscard]] LidarConfig lidar_config() const;
+  [[nodiscard]] HullConfig hull_config() const;
+
+ private:
+  SimulatedBerth(const SimulationOptions& options, const Scenario& scenario, const SensorTraits& sensor,
+                 sim::VelodyneEncoder encoder);
+
+  SimulationOptions options_;
+  const Scenario* scenario_;
+  const SensorTraits* sensor_;
+  int frames_;
+  sim::VelodyneEncoder encoder_;
+  LoaderMotion loader_;
+  HullMotion hull_;
+  PlcModel plc_;
+  std::unique_ptr<BerthWorld> world_;
+  std::uint64_t packets_ = 0;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,91 @@
+#include "daemon/simulator/site_config.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "daemon/simulator/loader_machine.hpp"
+
+namespace hulltrack {
+namespace {
+
+/// printf into the text; a line of a configuration is short.
+[[gnu::format(printf, 2, 3)]] void put(std::string& text, const char* format, ...) {
+  char line[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  text += line;
+}
+
+/// { xyz = [...], rpy_deg = [...] } to 1 mm and 0.001 deg.
+void put_pose(std::string& text, const char* key, const Pose& T) {
+  const Eigen::Vector3d xyz = T.translation();
+  const Eigen::Vector3d rpy =
+      rpy_from_rotation(T.linear()).unaryExpr([](double r) { return degrees(r) + 0.0; });
+  put(text, "%s = { xyz = [%.3f, %.3f, %.3f], rpy_deg = [%.3f, %.3f, %.3f] }\n", key, xyz.x(), xyz.y(),
+      xyz.z(), rpy.x(), rpy.y(), rpy.z());
+}
+
+void put_plc(std::string& text, const SiteAddresses& addresses) {
+  put(text, "[plc]\nhost = \"%s\"\nport = %u\n", addresses.plc_host.c_str(), unsigned{addresses.plc_port});
+  put(text, "latency_ms = %.1f   # encoder delay %.0f ms plus half of the PLC's cycle of %.0f ms\n\n",
+      PlcModel::kMeanLatency * 1e3, PlcModel::kEncoderDelay * 1e3, PlcModel::kCycle * 1e3);
+}
+
+void put_machine(std::string& text) {
+  const MachineConfig machine = loader_machine();
+  text += "[machine]   # slewing axis 8 m behind the quay's edge; luffing axis 20.5 m above the rails\n";
+  put_pose(text, "slew", machine.slew);
+  put_pose(text, "luff", machine.luff);
+  text += "\n";
+}
+
+void put_lidar(std::string& text, const LidarConfig& lidar, std::uint16_t port) {
+  put(text, "[[lidar]]\nname = \"boom\"\nmodel = \"%s\"\nport = %u\n", lidar.model.c_str(), unsigned{port});
+  text +=
+      "# Beside the chute's head. The fan hangs down, askew to the ship, so that decks, coaming sides and\n"
+      "# coaming ends are in view at every slew angle.\n";
+  put_pose(text, "mount", lidar.mount);
+  put(text, "min_range = %.1f\nmax_range = %.1f\n", lidar.min_range, lidar.max_range);
+  text += "# Boom and chute, in slices that stay slim when turned into the LiDAR's axes.\nexclude = [\n";
+  for (const auto& box : lidar.exclude)
+    put(text, "  [%.1f, %.1f, %.1f, %.1f, %.1f, %.1f],\n", box[0], box[1], box[2], box[3], box[4], box[5]);
+  text += "]\n\n";
+}
+
+void put_hull(std::string& text, const HullConfig& hull) {
+  const Eigen::Vector3d& p = hull.reference_point;
+  text += "[hull]\nmap = \"hull.pcd\"\n";
+  put(text,
+      "reference_point = [%.3f, %.3f, %.3f]   # hatch 2, coaming top, forward corner on the quay side\n",
+      p.x(), p.y(), p.z());
+  const Box& r = *hull.region;
+  put(text, "region = [%.1f, %.1f, %.1f, %.1f, %.1f, %.1f]   # from the quay's edge outward\n\n",
+      static_cast<double>(r.min.x()), static_cast<double>(r.min.y()), static_cast<double>(r.min.z()),
+      static_cast<double>(r.max.x()), static_cast<double>(r.max.y()), static_cast<double>(r.max.z()));
+}
+
+void put_health(std::string& text, const SensorTraits& sensor) {
+  text += "[health]\n" + std::string(sensor.q1_reason);
+  put(text, "q1_healthy = %.2f\nq1_lost = %.2f\n", sensor.q1_healthy, sensor.q1_lost);
+}
+
+}  // namespace
+
+std::string site_config(const SimulatedBerth& berth, const SiteAddresses& addresses) {
+  std::string text;
+  put(text, "# Simulated berth: scenario %s, %s, seed %llu.\n", std::string(berth.scenario().name).c_str(),
+      std::string(berth.sensor().model).c_str(), static_cast<unsigned long long>(berth.options().seed));
+  text +=
+      "# Written by `hulltrack simulate`; keys that are not here have their defaults, see "
+      "hulltrackd.toml(5).\n\n";
+  put_plc(text, addresses);
+  put_machine(text);
+  put_lidar(text, berth.lidar_config(), addresses.lidar_port);
+  put_hull(text, berth.hull_config());
+  put_health(text, berth.sensor());
+  return text;
+}
+
+}  // namespace hulltrack
