@@ -11,8 +11,8 @@ namespace hulltrack {
 
 namespace {
 
-/// Further back than this is no reordering on the way but another clock.
-constexpr Nanoseconds kMaxReordering = std::chrono::milliseconds(100);
+/// Further back than this is no reordering on the way but a clock that was set.
+constexpr Nanoseconds kMaxReordering = std::chrono::milliseconds(10);
 /// By how much the host's and the sensor's idea of the time between two datagrams may differ.
 constexpr Nanoseconds kMaxDisagreement = std::chrono::milliseconds(200);
 /// Longer than this is silence, which is reported as such, not as a loss of datagrams.
