@@ -1,0 +1,96 @@
+#include "core/io/map_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/io/pcd_reader.hpp"
+#include "core/io/ply_reader.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr std::uintmax_t kMaxFile = std::uintmax_t{4} << 30;  // bytes
+
+Result<std::string> read_bytes(const std::filesystem::path& file) {
+  std::error_code failure;
+  const auto status = std::filesystem::status(file, failure);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return Error{"is not a file; name a PCD or PLY file"};
+  }
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    return Error{std::string("cannot be opened: ") + std::strerror(errno) +
+                 "; name an existing PCD or PLY file"};
+  }
+  const std::uintmax_t size = std::filesystem::file_size(file, failure);
+  if (failure || size > kMaxFile) {
+    return Error{failure ? "cannot be read: " + failure.message() : "is larger than 4 GiB; thin the map out"};
+  }
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (stream.bad()) {
+    return Error{std::string("cannot be read: ") + std::strerror(errno)};
+  }
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
+}
+
+Result<Cloud> parse(std::string_view bytes) {
+  if (bytes.empty()) {
+    return Error{"is empty; copy the file again or make the map again"};
+  }
+  if (is_pcd(bytes)) {
+    return parse_pcd(bytes);
+  }
+  if (is_ply(bytes)) {
+    return parse_ply(bytes);
+  }
+  return Error{"is neither a PCD nor a PLY file; convert the map to one of these"};
+}
+
+bool usable(const Point& p) { return (p.array().abs() <= kMaxMapCoordinate).all(); }  // false for NaN
+
+Result<MapFile> keep_usable(Cloud cloud) {
+  const std::size_t all = cloud.size();
+  std::erase_if(cloud, [](const Point& p) { return !usable(p); });
+  const std::size_t dropped = all - cloud.size();
+  if (cloud.size() <= dropped) {
+    return Error{std::to_string(dropped) + " of its " + std::to_string(all) +
+                 " points are not finite or farther than 10 km from the origin; make the map again with its "
+                 "origin at the berth"};
+  }
+  return MapFile{std::move(cloud), dropped};
+}
+
+}  // namespace
+
+Result<MapFile> read_map_file(const std::filesystem::path& file) {
+  const auto in_file = [&](const Error& error) { return Error{file.string() + ": " + error.message}; };
+  const auto bytes = read_bytes(file);
+  if (!bytes) {
+    return in_file(bytes.error());
+  }
+  auto cloud = parse(*bytes);
+  if (!cloud) {
+    return in_file(cloud.error());
+  }
+  auto map = keep_usable(std::move(cloud).value());
+  return map ? std::move(map) : Result<MapFile>(in_file(map.error()));
+}
+
+Result<Cloud> read_hull_map(const std::filesystem::path& file) {
+  auto map = read_map_file(file);
+  if (!map) {
+    return map.error();
+  }
+  return std::move(map->cloud);
+}
+
+}  // namespace hulltrack

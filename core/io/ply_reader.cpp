@@ -1,0 +1,239 @@
+#include "core/io/ply_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "core/io/csv_lines.hpp"
+#include "core/io/header_lines.hpp"
+#include "core/io/map_file.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr std::size_t kMaxProperties = 256;
+
+struct Property {
+  std::string_view name;
+  std::size_t size = 0;  // bytes
+  bool real = false;     // float or double
+  std::size_t offset = 0;
+};
+
+struct Header {
+  enum class Format { none, ascii, little, big } format = Format::none;
+  std::size_t points = 0;
+  std::vector<Property> properties;   // of a vertex
+  std::array<std::size_t, 3> axes{};  // indices of x, y, z
+  [[nodiscard]] std::size_t record() const { return properties.back().offset + properties.back().size; }
+};
+
+/// Size of a scalar type; 0 for an unknown one. Both families of names are in use.
+std::size_t size_of(std::string_view type) {
+  constexpr std::array<std::pair<std::string_view, std::size_t>, 16> kTypes = {{{"char", 1},
+                                                                                {"int8", 1},
+                                                                                {"uchar", 1},
+                                                                                {"uint8", 1},
+                                                                                {"short", 2},
+                                                                                {"int16", 2},
+                                                                                {"ushort", 2},
+                                                                                {"uint16", 2},
+                                                                                {"int", 4},
+                                                                                {"int32", 4},
+                                                                                {"uint", 4},
+                                                                                {"uint32", 4},
+                                                                                {"float", 4},
+                                                                                {"float32", 4},
+                                                                                {"double", 8},
+                                                                                {"float64", 8}}};
+  for (const auto& [name, size] : kTypes) {
+    if (name == type) {
+      return size;
+    }
+  }
+  return 0;
+}
+
+class HeaderParser {
+ public:
+  explicit HeaderParser(HeaderLines& lines) : lines_(lines) {}
+
+  Result<Header> parse() {
+    lines_.skip();  // "ply"
+    while (true) {
+      const auto line = lines_.next();
+      if (!line || lines_.count() > 1000) {
+        return Error{"its header has no end_header line; is the file cut short?"};
+      }
+      if (*line == "end_header") {
+        return finish();
+      }
+      if (const std::string problem = take(*line); !problem.empty()) {
+        return Error{"line " + std::to_string(lines_.count()) + ": " + problem};
+      }
+    }
+  }
+
+ private:
+  enum class Element { none, vertex, later };
+
+  std::string take(std::string_view line) {
+    const std::string_view word = take_word(line);
+    if (word == "comment" || word == "obj_info") {
+      return {};
+    }
+    if (word == "format") {
+      return take_format(take_word(line));
+    }
+    if (word == "element") {
+      const std::string_view name = take_word(line);
+      return take_element(name, take_word(line));
+    }
+    if (word == "property") {
+      return element_ == Element::later ? std::string{} : take_property(line);
+    }
+    return "`" + std::string(word.substr(0, 40)) + "` is not a legal line of a PLY header";
+  }
+
+  std::string take_format(std::string_view name) {
+    using Format = Header::Format;
+    header_.format = name == "ascii"                  ? Format::ascii
+                     : name == "binary_little_endian" ? Format::little
+                     : name == "binary_big_endian"    ? Format::big
+                                                      : Format::none;
+    return header_.format == Format::none
+               ? "the format must be ascii, binary_little_endian or binary_big_endian"
+               : std::string{};
+  }
+
+  std::string take_element(std::string_view name, std::string_view count) {
+    if (element_ == Element::none && name != "vertex") {
+      return "the first element must be vertex; save the cloud without others";
+    }
+    if (element_ == Element::none) {
+      const auto points = parse_number<std::size_t>(count);
+      if (!points) {
+        return "`" + std::string(count.substr(0, 40)) + "` is not a number of points";
+      }
+      header_.points = *points;
+    }
+    element_ = element_ == Element::none ? Element::vertex : Element::later;
+    return {};
+  }
+
+  std::string take_property(std::string_view line) {
+    const std::string_view type = take_word(line);
+    const std::size_t size = size_of(type);
+    if (element_ == Element::none || size == 0 || header_.properties.size() >= kMaxProperties) {
+      return "a vertex may have scalar properties only (float x and so on), at most " +
+             std::to_string(kMaxProperties);
+    }
+    const std::size_t offset = header_.properties.empty() ? 0 : header_.record();
+    const bool real = type == "float" || type == "float32" || size == 8;
+    header_.properties.push_back({take_word(line), size, real, offset});
+    return {};
+  }
+
+  Result<Header> finish() {
+    if (header_.format == Header::Format::none) {
+      return Error{"its header has no format line; is this a PLY file?"};
+    }
+    constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto& all = header_.properties;
+      const auto found = std::find_if(all.begin(), all.end(),
+                                      [&](const Property& p) { return p.name == kNames[axis] && p.real; });
+      if (found == all.end()) {
+        return Error{"its vertices have no property float " + std::string(kNames[axis])};
+      }
+      header_.axes[axis] = static_cast<std::size_t>(found - all.begin());
+    }
+    if (header_.points == 0) {
+      return Error{"has no points; make the map again"};
+    }
+    if (header_.points > kMaxMapPoints) {
+      return Error{"its header says " + std::to_string(header_.points) + " points, at most " +
+                   std::to_string(kMaxMapPoints) + " are allowed; thin the map out (5 cm voxels are enough)"};
+    }
+    return header_;
+  }
+
+  HeaderLines& lines_;
+  Header header_;
+  Element element_ = Element::none;
+};
+
+template <typename T>
+float load(const char* bytes, bool swap) {
+  std::array<char, sizeof(T)> raw{};
+  std::copy_n(bytes, raw.size(), raw.begin());
+  if (swap) {
+    std::reverse(raw.begin(), raw.end());
+  }
+  T value{};
+  std::memcpy(&value, raw.data(), sizeof value);
+  return static_cast<float>(value);
+}
+
+Result<Cloud> parse_binary(const Header& header, std::string_view body) {
+  const std::size_t record = header.record();
+  if (body.size() < header.points * record) {
+    return Error{"is cut short: its header promises " + std::to_string(header.points * record) +
+                 " bytes of points, " + std::to_string(body.size()) + " are there; copy the file again"};
+  }
+  const bool swap = header.format == Header::Format::big;
+  Cloud cloud(header.points);
+  for (std::size_t i = 0; i < header.points; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Property& property = header.properties[header.axes[static_cast<std::size_t>(axis)]];
+      const char* bytes = body.data() + i * record + property.offset;
+      cloud[i][axis] = property.size == 8 ? load<double>(bytes, swap) : load<float>(bytes, swap);
+    }
+  }
+  return cloud;
+}
+
+Result<Cloud> parse_ascii(const Header& header, HeaderLines& lines) {
+  Cloud cloud;
+  const std::size_t shortest = 2 * header.properties.size();  // a digit and a blank each
+  cloud.reserve(std::min(header.points, lines.rest().size() / shortest + 1));
+  while (cloud.size() < header.points) {
+    auto line = lines.next();
+    if (!line) {
+      return Error{"is cut short: its header promises " + std::to_string(header.points) + " points, " +
+                   std::to_string(cloud.size()) + " are there; copy the file again"};
+    }
+    Point point = Point::Zero();
+    for (std::size_t word = 0; word < header.properties.size(); ++word) {
+      const std::string_view text = take_word(*line);
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool mine = header.axes[static_cast<std::size_t>(axis)] == word;
+        if (text.empty() || (mine && !parse_coordinate(text, point[axis]))) {
+          return Error{"line " + std::to_string(lines.count()) + ": value " + std::to_string(word + 1) +
+                       " is `" + std::string(text.substr(0, 40)) + "`, must be a number"};
+        }
+      }
+    }
+    cloud.push_back(point);
+  }
+  return cloud;
+}
+
+}  // namespace
+
+bool is_ply(std::string_view bytes) { return bytes.starts_with("ply\n") || bytes.starts_with("ply\r\n"); }
+
+Result<Cloud> parse_ply(std::string_view bytes) {
+  HeaderLines lines(bytes);
+  const auto header = HeaderParser(lines).parse();
+  if (!header) {
+    return header.error();
+  }
+  return header->format == Header::Format::ascii ? parse_ascii(*header, lines)
+                                                 : parse_binary(*header, lines.rest());
+}
+
+}  // namespace hulltrack
