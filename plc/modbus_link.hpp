@@ -55,7 +55,7 @@ class ModbusLink {
   using Clock = std::function<SteadyTime()>;
 
   /// `now` decides back-off and stamps; the default is std::chrono::steady_clock. Does not connect.
-  /// Throws std::invalid_argument for a unit id outside 0..255 or a timeout that is not positive.
+  /// Throws std::invalid_argument for a unit id other than 0..247 and 255 or a timeout that is not positive.
   explicit ModbusLink(ModbusLinkConfig config, Clock now = {});
   ~ModbusLink();
   ModbusLink(const ModbusLink&) = delete;

@@ -13,6 +13,7 @@
 #include <condition_variable>
 #include <limits>
 #include <mutex>
+#include <random>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -152,8 +153,9 @@ struct PlcServer::Impl {
 
   PlcFault fault = PlcFault::none;
   int fault_requests = kForever;
-  PlcReading current;   // this PLC cycle's
-  PlcReading previous;  // the one before
+  std::mt19937 random{1};  // of garbage
+  PlcReading current;      // this PLC cycle's
+  PlcReading previous;     // the one before
 
   std::uint64_t requests = 0;
   std::uint64_t connections = 0;
@@ -301,6 +303,9 @@ struct PlcServer::Impl {
       case PlcFault::truncated_reply:
         send_all(client.fd, whole.first(whole.size() / 2));
         return;
+      case PlcFault::garbage_reply:
+        spoil(reply);
+        break;
       case PlcFault::dribbled_reply: {
         SteadyTime due = steady_now();
         for (const std::uint8_t byte : reply) outgoing.push_back({due += config.dribble, client.fd, {byte}});
@@ -310,6 +315,15 @@ struct PlcServer::Impl {
         break;
     }
     send_all(client.fd, reply);
+  }
+
+  /// Half of the time the 8 bytes that libmodbus looks at first stay correct.
+  void spoil(Bytes& reply) {
+    const bool keep_header = (random() & 1u) != 0;
+    reply.resize(keep_header ? kMbapLength + 1 + random() % 250 : 1 + random() % 300);
+    for (std::size_t i = keep_header ? kMbapLength + 1 : 0; i < reply.size(); ++i) {
+      reply[i] = static_cast<std::uint8_t>(random());
+    }
   }
 
   [[nodiscard]] static int address_of(const Bytes& request) { return request[8] << 8 | request[9]; }

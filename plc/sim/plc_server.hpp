@@ -43,6 +43,7 @@ enum class PlcFault {
   wrong_transaction,  // another request's transaction id
   duplicate_reply,    // sent twice
   truncated_reply,    // its first half
+  garbage_reply,      // random bytes, sometimes behind a correct header; the same ones in every run
   dribbled_reply,     // byte by byte, PlcServerConfig::dribble apart
   illegal_function,   // exception 01
   illegal_address,    // exception 02

@@ -31,14 +31,18 @@ inline ModbusLink::Clock clock_of(const TestClock& clock) {
   return [&clock] { return clock.now; };
 }
 
-/// Polls, 20 ms of the test's clock apart, until one is ok; how many were not. Gives up after `most`.
-inline int polls_lost(PlcClient& client, TestClock& clock, int most = 1000) {
-  int lost = 0;
-  while (lost < most && !client.poll().ok()) {
-    ++lost;
-    clock.advance(20ms);
-  }
-  return lost;
+/// Polls, 20 ms of the test's clock apart, until one is ok.
+struct Recovery {
+  int lost = 0;  // polls that were not
+  PlcPoll poll;  // the last one; not ok when it was given up
+};
+
+inline Recovery poll_until_ok(PlcClient& client, TestClock& clock, int most = 1000) {
+  Recovery recovery;
+  while (!(recovery.poll = client.poll()).ok() && ++recovery.lost < most) clock.advance(20ms);
+  return recovery;
 }
+
+inline int polls_lost(PlcClient& client, TestClock& clock) { return poll_until_ok(client, clock).lost; }
 
 }  // namespace hulltrack

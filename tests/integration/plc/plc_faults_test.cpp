@@ -54,8 +54,7 @@ TEST(PlcFaults, ABlackHoleIsGivenUpWithinTheResponseTimeout) {
   EXPECT_EQ(poll.outcome, LinkOutcome::unreachable);
   EXPECT_THAT(poll.message, HasSubstr("timed out"));
   EXPECT_GE(waited, kImpatient);
-  // The kernel alone would try for two minutes.
-  EXPECT_LT(waited, 20 * kImpatient);
+  EXPECT_LT(waited, 60s);  // the kernel alone would try for two minutes
   bench.server.set_fault(PlcFault::none);
   EXPECT_LT(polls_lost(bench.client, bench.clock), 100);
 }
@@ -355,6 +354,19 @@ TEST(PlcFaults, AFullConnectionPoolIsNotStormed) {
   EXPECT_EQ(bench.server.most_connections(), 1);
 }
 
+TEST(PlcFaults, AnyBytesForAReplyLeaveALinkThatRunsAgain) {
+  Bench bench(10ms);
+  bench.server.set_fault(PlcFault::garbage_reply);
+  for (int i = 0; i < 300; ++i) {
+    static_cast<void>(bench.client.poll());
+    bench.clock.advance(1s);
+    static_cast<void>(bench.client.write({}));
+    bench.clock.advance(1s);
+  }
+  bench.server.set_fault(PlcFault::none);
+  EXPECT_TRUE(poll_until_ok(bench.client, bench.clock).poll.ok());
+}
+
 TEST(PlcFaults, EveryFaultEndsInARunningLinkWithOneSocket) {
   sim::PlcServerConfig settings;
   settings.read.heartbeat_tail = 8;
@@ -366,8 +378,9 @@ TEST(PlcFaults, EveryFaultEndsInARunningLinkWithOneSocket) {
     static_cast<void>(bench.client.write({}));
     bench.server.set_fault(PlcFault::none);
     bench.server.set_joints(fault, 0, 0);
-    EXPECT_LT(polls_lost(bench.client, bench.clock), 500) << "fault " << fault;
-    EXPECT_EQ(bench.client.poll().reading.travel_m, fault);
+    const Recovery recovery = poll_until_ok(bench.client, bench.clock);
+    EXPECT_TRUE(recovery.poll.ok()) << "fault " << fault;
+    EXPECT_EQ(recovery.poll.reading.travel_m, fault);
   }
   EXPECT_EQ(bench.server.most_connections(), 1);
 }
