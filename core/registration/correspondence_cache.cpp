@@ -1,5 +1,7 @@
 #include "core/registration/correspondence_cache.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hulltrack {
@@ -9,16 +11,17 @@ namespace {
 // before they are searched for again.
 constexpr float kMargin = 0.3F;
 
+// Searches bring the points this much farther than the nearest one as well, m. The first search of an
+// alignment does not: the first step is the largest and would use the margin up.
+constexpr float kNeighbourMargin = 0.02F;
+
 // Distances are rounded to float: a bound is believed only up to this share of the lengths in it.
 constexpr float kRounding = 1e-5F;
 
-struct Nearest {
-  float squared_distance;
-  std::size_t lane;
-};
+}  // namespace
 
-// The nearest of the few, ties by index. Same float operations as the tree's own.
-Nearest nearest_of(const Neighbourhood& near, const Point& q) {
+// Same float operations as the tree's own; equal distances go to the lowest index.
+CorrespondenceCache::Nearest CorrespondenceCache::nearest_of(const Neighbourhood& near, const Point& q) {
   std::array<float, Neighbourhood::kCapacity> squared;
   for (std::size_t i = 0; i < squared.size(); ++i) {
     const float dx = near.x[i] - q.x();
@@ -27,7 +30,7 @@ Nearest nearest_of(const Neighbourhood& near, const Point& q) {
     squared[i] = (dx * dx + dy * dy) + dz * dz;
   }
   Nearest best{squared[0], 0};
-  for (std::size_t i = 1; i < near.count; ++i) {
+  for (std::uint32_t i = 1; i < near.count; ++i) {
     if (squared[i] < best.squared_distance ||
         (squared[i] == best.squared_distance && near.index[i] < near.index[best.lane])) {
       best = {squared[i], i};
@@ -36,15 +39,15 @@ Nearest nearest_of(const Neighbourhood& near, const Point& q) {
   return best;
 }
 
-}  // namespace
-
 void CorrespondenceCache::reset(std::span<const Point> source, const KdTree& target) {
   source_ = source;
   target_ = &target;
   searches_ = 0;
+  margin_ = 0.0F;
+  places_.resize(source.size());
+  nearest_.resize(source.size());
   entries_.resize(source.size());
   for (Entry& entry : entries_) {
-    entry.near.x.fill(std::numeric_limits<float>::infinity());
     entry.near.count = 0;
     entry.near.clear_radius = -1.0F;  // nothing is known: the first find() searches
     entry.searched_at = Point::Zero();
@@ -52,33 +55,64 @@ void CorrespondenceCache::reset(std::span<const Point> source, const KdTree& tar
 }
 
 std::span<const Correspondence> CorrespondenceCache::find(const Pose& T_target_source) {
-  const float squared_gate = gate_ * gate_;
+  place_source(T_target_source);
+  look_up();
+  search_unknown();
   pairs_.clear();
+  const float squared_gate = gate_ * gate_;
   for (std::size_t i = 0; i < source_.size(); ++i) {
-    const Eigen::Vector3d place = T_target_source * source_[i].cast<double>();
-    const Point q = place.cast<float>();
-    if (!q.allFinite()) {
-      continue;
-    }
-    Entry& entry = entries_[i];
-    Nearest nearest = nearest_of(entry.near, q);
-    const float moved = (q - entry.searched_at).norm();
-    const float reach = entry.near.clear_radius - moved - kRounding * (entry.near.clear_radius + moved);
-    const bool known = reach > 0.0F && std::min(nearest.squared_distance, squared_gate) < reach * reach;
-    if (!known) {
-      target_->neighbourhood(q, gate_ * (1.0F + kMargin), entry.near);
-      entry.searched_at = q;
-      ++searches_;
-      nearest = nearest_of(entry.near, q);
-    }
+    const Nearest& nearest = nearest_[i];
     if (nearest.squared_distance < squared_gate) {
-      const std::size_t lane = nearest.lane;
-      const Point target(entry.near.x[lane], entry.near.y[lane], entry.near.z[lane]);
+      const Neighbourhood& near = entries_[i].near;
       pairs_.push_back(
-          {place, target.cast<double>(), std::sqrt(static_cast<double>(nearest.squared_distance))});
+          {places_[i],
+           Eigen::Vector3f(near.x[nearest.lane], near.y[nearest.lane], near.z[nearest.lane]).cast<double>(),
+           std::sqrt(static_cast<double>(nearest.squared_distance))});
     }
   }
   return pairs_;
+}
+
+void CorrespondenceCache::place_source(const Pose& T_target_source) {
+  const Eigen::Matrix3d R = T_target_source.linear();
+  const Eigen::Vector3d t = T_target_source.translation();
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    places_[i] = R * source_[i].cast<double>() + t;
+  }
+}
+
+// Answers what can be answered from the last searches, lists the others in unknown_.
+void CorrespondenceCache::look_up() {
+  const float squared_gate = gate_ * gate_;
+  unknown_.clear();
+  queries_.clear();
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    const Entry& entry = entries_[i];
+    const Point q = places_[i].cast<float>();
+    const float moved = (q - entry.searched_at).norm();
+    const float clear = entry.near.clear_radius;
+    const float reach = clear - moved - kRounding * (clear + moved);
+    nearest_[i] = entry.near.count > 0 ? nearest_of(entry.near, q) : Nearest{};
+    const bool known = reach > 0.0F && std::min(nearest_[i].squared_distance, squared_gate) < reach * reach;
+    if (!known) {
+      unknown_.push_back(static_cast<std::uint32_t>(i));
+      queries_.push_back(q);
+    }
+  }
+}
+
+void CorrespondenceCache::search_unknown() {
+  answers_.resize(std::max(answers_.size(), queries_.size()));
+  target_->neighbourhoods(queries_, gate_ * (1.0F + kMargin), margin_,
+                          std::span(answers_).first(queries_.size()));
+  for (std::size_t u = 0; u < unknown_.size(); ++u) {
+    Entry& entry = entries_[unknown_[u]];
+    entry.near = answers_[u];
+    entry.searched_at = queries_[u];
+    nearest_[unknown_[u]] = entry.near.count > 0 ? nearest_of(entry.near, queries_[u]) : Nearest{};
+  }
+  searches_ += unknown_.size();
+  margin_ = kNeighbourMargin;
 }
 
 }  // namespace hulltrack

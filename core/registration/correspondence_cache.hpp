@@ -8,7 +8,9 @@
 // partner. Thread rule: one owner; scratch memory is kept. Cost: 180 bytes a source point.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -45,13 +47,29 @@ class CorrespondenceCache {
     Neighbourhood near;
     Point searched_at;
   };
+  struct Nearest {
+    float squared_distance = std::numeric_limits<float>::infinity();
+    std::uint32_t lane = 0;  // in the entry's neighbourhood
+  };
+
+  [[nodiscard]] static Nearest nearest_of(const Neighbourhood& near, const Point& q);
+  void place_source(const Pose& T_target_source);
+  void look_up();
+  void search_unknown();
 
   float gate_;
   std::span<const Point> source_;
   const KdTree* target_ = nullptr;
-  std::vector<Entry> entries_;
-  std::vector<Correspondence> pairs_;
   std::size_t searches_ = 0;
+
+  std::vector<Entry> entries_;           // per source point
+  std::vector<Eigen::Vector3d> places_;  // per source point, in the target's frame
+  std::vector<Nearest> nearest_;         // per source point
+  std::vector<std::uint32_t> unknown_;   // source points to be searched for
+  std::vector<Point> queries_;           // per unknown
+  std::vector<Neighbourhood> answers_;   // per unknown
+  float margin_ = 0.0F;                  // of the searches of this round, m
+  std::vector<Correspondence> pairs_;
 };
 
 }  // namespace hulltrack

@@ -1,16 +1,13 @@
 #include "core/search/kdtree.hpp"
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
+#include <cassert>
 
 #include "core/search/kdtree_build.hpp"
 #include "core/search/kdtree_query.hpp"
 
 namespace hulltrack {
 namespace {
-
-// The largest float below radius^2: "distance < radius" as the kernels' "<= limit".
-float limit_below(float radius) { return radius > 0.0F ? std::nextafter(radius * radius, 0.0F) : -1.0F; }
 
 template <typename T>
 std::size_t bytes(const std::vector<T>& v) {
@@ -38,38 +35,41 @@ KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
 std::optional<Neighbour> KdTree::nearest(const Point& query, float radius) const {
   kdtree::Hit hit;
-  if (!impl_->kernels.nearest(impl_->layout, query, limit_below(radius), hit)) {
+  impl_->kernels.nearest(impl_->layout, {&query, 1}, kdtree::limit_below(radius), &hit);
+  if (hit.slot == kdtree::kNoSlot) {
     return std::nullopt;
   }
   return Neighbour{impl_->layout.index[hit.slot], hit.squared_distance};
 }
 
+void KdTree::nearest(std::span<const Point> queries, float radius, std::span<Neighbour> out) const {
+  assert(out.size() == queries.size());
+  std::array<kdtree::Hit, 256> hits;
+  for (std::size_t first = 0; first < queries.size(); first += hits.size()) {
+    const std::size_t count = std::min(hits.size(), queries.size() - first);
+    impl_->kernels.nearest(impl_->layout, queries.subspan(first, count), kdtree::limit_below(radius),
+                           hits.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool found = hits[i].slot != kdtree::kNoSlot;
+      out[first + i] = {found ? impl_->layout.index[hits[i].slot] : Neighbour::kNone,
+                        hits[i].squared_distance};
+    }
+  }
+}
+
 void KdTree::nearest_k(const Point& query, std::size_t k, float radius, std::vector<Neighbour>& out) const {
   std::vector<kdtree::Hit> hits(std::min(k, size()));
-  hits.resize(impl_->kernels.nearest_k(impl_->layout, query, limit_below(radius), hits));
+  hits.resize(impl_->kernels.nearest_k(impl_->layout, query, kdtree::limit_below(radius), hits));
   out.clear();
   for (const kdtree::Hit& hit : hits) {
     out.push_back({impl_->layout.index[hit.slot], hit.squared_distance});
   }
 }
 
-void KdTree::neighbourhood(const Point& query, float radius, Neighbourhood& out) const {
-  std::array<kdtree::Hit, Neighbourhood::kCapacity> hits;
-  const std::size_t count = impl_->kernels.nearest_k(impl_->layout, query, limit_below(radius), hits);
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  out.x.fill(kInfinity);
-  out.y.fill(kInfinity);
-  out.z.fill(kInfinity);
-  for (std::size_t i = 0; i < count; ++i) {
-    const kdtree::Leaf& leaf = impl_->layout.leaves[hits[i].slot / kdtree::kLeafSize];
-    const std::size_t position = hits[i].slot % kdtree::kLeafSize;
-    out.x[i] = leaf.x[position];
-    out.y[i] = leaf.y[position];
-    out.z[i] = leaf.z[position];
-    out.index[i] = impl_->layout.index[hits[i].slot];
-  }
-  out.count = static_cast<std::uint32_t>(count);
-  out.clear_radius = count == hits.size() ? std::sqrt(hits.back().squared_distance) : radius;
+void KdTree::neighbourhoods(std::span<const Point> queries, float radius, float margin,
+                            std::span<Neighbourhood> out) const {
+  assert(out.size() == queries.size());
+  impl_->kernels.neighbourhoods(impl_->layout, queries, radius, margin, out.data());
 }
 
 std::size_t KdTree::size() const { return impl_->layout.size; }

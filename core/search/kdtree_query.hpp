@@ -6,26 +6,39 @@
 // Internal to core/search. Thread rule: pure functions on an immutable layout. No failure.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "core/geometry/cloud.hpp"
+#include "core/search/kdtree.hpp"
 #include "core/search/kdtree_layout.hpp"
 
 namespace hulltrack::kdtree {
 
-/// A point found: where it stands in the layout, its squared distance in m^2.
+inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
+
+/// A point found: where it stands in the layout (or kNoSlot), its squared distance in m^2.
 struct Hit {
   std::uint32_t slot;
   float squared_distance;
 };
 
+/// The largest float below radius^2: turns "distance < radius" into the searches' "squared <= limit".
+[[nodiscard]] inline float limit_below(float radius) {
+  return radius > 0.0F ? std::nextafter(radius * radius, 0.0F) : -1.0F;
+}
+
 struct Kernels {
   const char* name;
 
-  /// The nearest point with squared distance <= limit into `hit`; false if there is none.
-  bool (*nearest)(const Layout& layout, const Point& query, float limit, Hit& hit);
+  /// Per query the nearest point with squared distance <= limit.
+  void (*nearest)(const Layout& layout, std::span<const Point> queries, float limit, Hit* hits);
+
+  /// As KdTree::neighbourhoods.
+  void (*neighbourhoods)(const Layout& layout, std::span<const Point> queries, float radius, float margin,
+                         Neighbourhood* out);
 
   /// The nearest hits.size() points with squared distance <= limit, nearest first, ties by index; returns
   /// how many there are.

@@ -22,10 +22,10 @@ HULLTRACK_TARGET inline Lanes outside(Lanes q, Lanes low, Lanes high) {
   return max(max(sub(low, q), sub(q, high)), zero());
 }
 
-HULLTRACK_TARGET inline Lanes squared_distance(const Query& q, const Node& node) {
-  return squared_norm(outside(q.x, load(node.min_x), load(node.max_x)),
-                      outside(q.y, load(node.min_y), load(node.max_y)),
-                      outside(q.z, load(node.min_z), load(node.max_z)));
+HULLTRACK_TARGET inline Lanes squared_distance(const Query& q, const Node& node, std::size_t first) {
+  return squared_norm(outside(q.x, load(node.min_x + first), load(node.max_x + first)),
+                      outside(q.y, load(node.min_y + first), load(node.max_y + first)),
+                      outside(q.z, load(node.min_z + first), load(node.max_z + first)));
 }
 
 HULLTRACK_TARGET inline Lanes squared_distance(const Query& q, const Leaf& leaf, std::size_t first) {
@@ -33,53 +33,38 @@ HULLTRACK_TARGET inline Lanes squared_distance(const Query& q, const Leaf& leaf,
                       sub(load(leaf.z + first), q.z));
 }
 
-// A child still to be visited: nodes as they are, leaves with kLeafFlag.
-struct Pending {
-  float squared_distance;
-  std::uint32_t child;
+// Squared distances of a query from the points of a leaf.
+struct LeafDistances {
+  Lanes block[kLeafSize / kLanes];
+
+  HULLTRACK_TARGET LeafDistances(const Query& q, const Leaf& leaf) {
+    for (std::size_t i = 0; i < kLeafSize / kLanes; ++i) {
+      block[i] = squared_distance(q, leaf, i * kLanes);
+    }
+  }
+  HULLTRACK_TARGET float least() const {
+    return smallest(min(min(block[0], block[1]), min(block[2], block[3])));
+  }
+
+  HULLTRACK_TARGET void store_to(float* squared) const {
+    for (std::size_t i = 0; i < kLeafSize / kLanes; ++i) {
+      store(squared + i * kLanes, block[i]);
+    }
+  }
+
+  // One bit a point.
+  HULLTRACK_TARGET std::uint32_t within(float limit) const {
+    const Lanes l = broadcast(limit);
+    return at_most(block[0], l) | (at_most(block[1], l) << 8) | (at_most(block[2], l) << 16) |
+           (at_most(block[3], l) << 24);
+  }
 };
 
-struct Stack {
-  Pending entries[kMaxHeight * kFanOut];
-  std::size_t size = 0;
+// An opened node: how far away its children are that are still to be visited.
+struct alignas(32) Frame {
+  float squared_distance[kFanOut];  // infinity: no such child, or visited
+  std::uint32_t first_child;
 };
-
-// Puts the children of `node` within `limit` on the stack, the nearest on top.
-HULLTRACK_TARGET inline void push_children(const Layout& layout, std::uint32_t node, const Query& q,
-                                           float limit, Stack& stack) {
-  const Lanes distance = squared_distance(q, layout.nodes[node]);
-  std::uint32_t mask = at_most(distance, broadcast(limit));
-  alignas(32) float squared[kFanOut];
-  store(squared, distance);
-  const std::uint32_t first = layout.first_child[node];
-  const std::size_t base = stack.size;
-  for (; mask != 0; mask &= mask - 1) {
-    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(mask));
-    const Pending pending{squared[lane], first + lane};
-    std::size_t at = stack.size++;
-    for (; at > base && stack.entries[at - 1].squared_distance < pending.squared_distance; --at) {
-      stack.entries[at] = stack.entries[at - 1];
-    }
-    stack.entries[at] = pending;
-  }
-}
-
-// Takes the next leaf within `limit` from the stack, opening nodes on the way; false at the end.
-HULLTRACK_TARGET inline bool next_leaf(const Layout& layout, const Query& q, float limit, Stack& stack,
-                                       std::uint32_t& leaf) {
-  while (stack.size > 0) {
-    const Pending next = stack.entries[--stack.size];
-    if (!(next.squared_distance <= limit)) {
-      continue;
-    }
-    if ((next.child & kLeafFlag) != 0) {
-      leaf = next.child & ~kLeafFlag;
-      return true;
-    }
-    push_children(layout, next.child, q, limit, stack);
-  }
-  return false;
-}
 
 HULLTRACK_TARGET inline bool is_searchable(const Layout& layout, const Point& query) {
   // x - x is 0 for finite numbers and NaN for all others.
@@ -87,38 +72,124 @@ HULLTRACK_TARGET inline bool is_searchable(const Layout& layout, const Point& qu
          query.z() - query.z() == 0.0F;
 }
 
-HULLTRACK_TARGET bool nearest(const Layout& layout, const Point& query, float limit, Hit& hit) {
-  if (!is_searchable(layout, query)) {
-    return false;
+HULLTRACK_TARGET inline void prefetch(const Layout& layout, std::uint32_t child) {
+  const bool is_leaf = (child & kLeafFlag) != 0;
+  const char* from = is_leaf ? reinterpret_cast<const char*>(&layout.leaves[child & ~kLeafFlag])
+                             : reinterpret_cast<const char*>(&layout.nodes[child]);
+  const char* const end = from + (is_leaf ? sizeof(Leaf) : sizeof(Node));
+  for (; from < end; from += kCacheLine) {
+    __builtin_prefetch(from);
   }
-  const Query q = broadcast(query);
-  bool found = false;
-  Stack stack;
-  stack.entries[stack.size++] = {0.0F, 0};
-  for (std::uint32_t leaf = 0; next_leaf(layout, q, limit, stack, leaf);) {
-    Lanes distance[kLeafSize / kFanOut];
-    for (std::size_t block = 0; block < kLeafSize / kFanOut; ++block) {
-      distance[block] = squared_distance(q, layout.leaves[leaf], block * kFanOut);
-    }
-    const Lanes least = min(min(distance[0], distance[1]), min(distance[2], distance[3]));
-    if (at_most(least, broadcast(limit)) == 0) {
-      continue;
-    }
-    const float best = smallest(least);
-    for (std::size_t block = 0; block < kLeafSize / kFanOut; ++block) {
-      for (std::uint32_t mask = at_most(distance[block], broadcast(best)); mask != 0; mask &= mask - 1) {
-        const auto slot = static_cast<std::uint32_t>(leaf * kLeafSize + block * kFanOut +
-                                                     static_cast<std::size_t>(__builtin_ctz(mask)));
-        if (!found || best < hit.squared_distance || layout.index[slot] < layout.index[hit.slot]) {
-          hit = {slot, best};
-          found = true;
-        }
+}
+
+// One search on its way: a query, what it has found, the opened nodes from the root to where it stands.
+template <typename Collector>
+struct Search {
+  Point query;
+  std::uint32_t next;  // the child to visit next
+  std::size_t number;
+  std::size_t depth;
+  Collector found;
+  Frame frames[kMaxHeight];
+
+  HULLTRACK_TARGET void start(std::size_t query_number, const Point& from, const Collector& empty) {
+    query = from;
+    number = query_number;
+    found = empty;
+    depth = 0;
+    next = 0;
+  }
+
+  // Visits one node or leaf, then chooses and fetches the next; false when nothing is left.
+  HULLTRACK_TARGET bool step(const Layout& layout) {
+    const Query q = broadcast(query);
+    if ((next & kLeafFlag) != 0) {
+      found.scan(layout, q, next & ~kLeafFlag);
+    } else {
+      Frame& frame = frames[depth++];
+      frame.first_child = layout.first_child[next];
+      for (std::size_t i = 0; i < kFanOut; i += kLanes) {
+        store(frame.squared_distance + i, squared_distance(q, layout.nodes[next], i));
       }
     }
-    limit = best;
+    return choose_next(layout);
   }
-  return found;
+
+  // The nearest child of the deepest node that has one within the limit.
+  HULLTRACK_TARGET bool choose_next(const Layout& layout) {
+    for (; depth > 0; --depth) {
+      Frame& frame = frames[depth - 1];
+      const Lanes low = load(frame.squared_distance);
+      const Lanes high = load(frame.squared_distance + kLanes);
+      const float least = smallest(min(low, high));
+      if (least <= found.limit) {
+        const Lanes l = broadcast(least);
+        const int child = __builtin_ctz(at_most(low, l) | (at_most(high, l) << kLanes));
+        frame.squared_distance[child] = __builtin_inff();
+        next = frame.first_child + static_cast<std::uint32_t>(child);
+        prefetch(layout, next);
+        return true;
+      }
+    }
+    return false;
+  }
+};
+
+// Steps several searches in turn, so that each one's memory arrives while the others compute.
+template <typename Collector, typename Out>
+HULLTRACK_TARGET inline void search_all(const Layout& layout, std::span<const Point> queries,
+                                        const Collector& empty, Out* out) {
+  Search<Collector> active[kInterleaved];
+  std::size_t running = 0;
+  std::size_t next = 0;
+  while (next < queries.size() || running > 0) {
+    for (; running < kInterleaved && next < queries.size(); ++next) {
+      if (is_searchable(layout, queries[next])) {
+        active[running++].start(next, queries[next], empty);
+      } else {
+        Collector none = empty;
+        none.finish(layout, out[next]);
+      }
+    }
+    for (std::size_t i = 0; i < running;) {
+      if (active[i].step(layout)) {
+        ++i;
+        continue;
+      }
+      active[i].found.finish(layout, out[active[i].number]);
+      if (--running > i) {
+        active[i] = active[running];
+      }
+    }
+  }
 }
+
+HULLTRACK_TARGET inline std::uint32_t first_slot(std::uint32_t leaf) {
+  return leaf * static_cast<std::uint32_t>(kLeafSize);
+}
+
+// The nearest point.
+struct NearestCollector {
+  float limit;
+  std::uint32_t slot = kNoSlot;
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const LeafDistances distances(q, layout.leaves[leaf]);
+    const float best = distances.least();
+    if (!(best <= limit)) {
+      return;
+    }
+    for (std::uint32_t mask = distances.within(best); mask != 0; mask &= mask - 1) {
+      const std::uint32_t candidate = first_slot(leaf) + static_cast<std::uint32_t>(__builtin_ctz(mask));
+      if (slot == kNoSlot || best < limit || layout.index[candidate] < layout.index[slot]) {
+        slot = candidate;
+        limit = best;
+      }
+    }
+  }
+
+  HULLTRACK_TARGET void finish(const Layout&, Hit& hit) const { hit = {slot, limit}; }
+};
 
 HULLTRACK_TARGET inline bool comes_before(const Layout& layout, const Hit& a, const Hit& b) {
   return a.squared_distance < b.squared_distance ||
@@ -144,33 +215,120 @@ HULLTRACK_TARGET inline std::size_t insert(const Layout& layout, const Hit& hit,
   return count;
 }
 
+// The nearest few points among those not farther than the nearest one and a margin. They are gathered
+// unsorted, which branches little; only when they are too many the nearest are sorted out.
+struct NeighbourhoodCollector {
+  static constexpr std::size_t kFew = Neighbourhood::kCapacity;
+  static constexpr std::size_t kRoom = kFew + kLeafSize;
+
+  float limit;   // the tightest bound so far, inclusive, m^2
+  float margin;  // m
+  float clear_radius;
+  std::uint32_t count = 0;
+  Hit hits[kRoom];
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const LeafDistances distances(q, layout.leaves[leaf]);
+    const float best = distances.least();
+    if (!(best <= limit)) {
+      return;
+    }
+    const float reach = __builtin_sqrtf(best) + margin;
+    const float squared_reach = reach * reach > best ? reach * reach : best;  // never below by rounding
+    if (squared_reach < limit) {
+      limit = squared_reach;
+      clear_radius = reach;
+    }
+    if (count > kFew) {
+      keep_few(layout);
+    }
+    alignas(32) float squared[kLeafSize];
+    distances.store_to(squared);
+    for (std::uint32_t mask = distances.within(limit); mask != 0; mask &= mask - 1) {
+      const auto position = static_cast<std::uint32_t>(__builtin_ctz(mask));
+      hits[count++] = {first_slot(leaf) + position, squared[position]};
+    }
+  }
+
+  // Drops what the limit has overtaken and, if still necessary, all but the nearest few.
+  HULLTRACK_TARGET void keep_few(const Layout& layout) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      hits[kept] = hits[i];
+      kept += hits[i].squared_distance <= limit ? 1U : 0U;
+    }
+    count = kept;
+    if (count > kFew) {
+      std::size_t sorted = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Hit hit = hits[i];
+        sorted = insert(layout, hit, std::span<Hit>(hits, kFew), sorted);
+      }
+      count = kFew;
+      limit = hits[kFew - 1].squared_distance;
+      clear_radius = __builtin_sqrtf(limit);
+    }
+  }
+
+  HULLTRACK_TARGET void finish(const Layout& layout, Neighbourhood& out) {
+    keep_few(layout);
+    for (std::uint32_t i = 0; i < kFew; ++i) {
+      out.x[i] = out.y[i] = out.z[i] = __builtin_inff();
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Leaf& leaf = layout.leaves[hits[i].slot / kLeafSize];
+      const std::size_t position = hits[i].slot % kLeafSize;
+      out.x[i] = leaf.x[position];
+      out.y[i] = leaf.y[position];
+      out.z[i] = leaf.z[position];
+      out.index[i] = layout.index[hits[i].slot];
+    }
+    out.count = count;
+    out.clear_radius = clear_radius;
+  }
+};
+
+// The nearest k points, nearest first.
+struct KNearestCollector {
+  float limit;
+  std::span<Hit> hits;
+  std::size_t count = 0;
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const LeafDistances distances(q, layout.leaves[leaf]);
+    alignas(32) float squared[kLeafSize];
+    distances.store_to(squared);
+    for (std::uint32_t mask = distances.within(limit); mask != 0; mask &= mask - 1) {
+      const auto position = static_cast<std::uint32_t>(__builtin_ctz(mask));
+      count = insert(layout, {first_slot(leaf) + position, squared[position]}, hits, count);
+    }
+    if (count == hits.size()) {
+      limit = hits[count - 1].squared_distance;
+    }
+  }
+};
+
+HULLTRACK_TARGET void nearest(const Layout& layout, std::span<const Point> queries, float limit, Hit* hits) {
+  search_all(layout, queries, NearestCollector{limit}, hits);
+}
+
+HULLTRACK_TARGET void neighbourhoods(const Layout& layout, std::span<const Point> queries, float radius,
+                                     float margin, Neighbourhood* out) {
+  NeighbourhoodCollector empty;
+  empty.limit = limit_below(radius);
+  empty.margin = margin;
+  empty.clear_radius = radius;
+  search_all(layout, queries, empty, out);
+}
+
 HULLTRACK_TARGET std::size_t nearest_k(const Layout& layout, const Point& query, float limit,
                                        std::span<Hit> hits) {
   if (hits.empty() || !is_searchable(layout, query)) {
     return 0;
   }
-  const Query q = broadcast(query);
-  std::size_t count = 0;
-  Stack stack;
-  stack.entries[stack.size++] = {0.0F, 0};
-  for (std::uint32_t leaf = 0; next_leaf(layout, q, limit, stack, leaf);) {
-    for (std::size_t block = 0; block < kLeafSize; block += kFanOut) {
-      const Lanes distance = squared_distance(q, layout.leaves[leaf], block);
-      std::uint32_t mask = at_most(distance, broadcast(limit));
-      if (mask == 0) {
-        continue;
-      }
-      alignas(32) float squared[kFanOut];
-      store(squared, distance);
-      for (; mask != 0; mask &= mask - 1) {
-        const auto lane = static_cast<std::size_t>(__builtin_ctz(mask));
-        const Hit hit{static_cast<std::uint32_t>(leaf * kLeafSize + block + lane), squared[lane]};
-        count = insert(layout, hit, hits, count);
-      }
-      if (count == hits.size()) {
-        limit = hits[count - 1].squared_distance;
-      }
-    }
+  Search<KNearestCollector> search;
+  search.start(0, query, {limit, hits});
+  while (search.step(layout)) {
   }
-  return count;
+  return search.found.count;
 }

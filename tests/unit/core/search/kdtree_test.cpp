@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <set>
 
 #include "core/search/kdtree_build.hpp"
 #include "core/search/kdtree_query.hpp"
@@ -53,10 +54,55 @@ Cloud grid_cloud(std::size_t size, unsigned seed) {
   return cloud;
 }
 
+// What a neighbourhood promises, point by point: nothing is missing within the clear radius.
+void expect_neighbourhood(const Neighbourhood& near, const Cloud& cloud,
+                          const std::vector<Neighbour>& expected, float margin, float radius) {
+  ASSERT_LE(near.count, Neighbourhood::kCapacity);
+  if (expected.empty()) {
+    ASSERT_EQ(near.count, 0U);
+    ASSERT_EQ(near.clear_radius, radius);
+    return;
+  }
+  std::set<std::uint32_t> listed;
+  for (std::size_t i = 0; i < near.count; ++i) {
+    listed.insert(near.index[i]);
+    ASSERT_EQ(Point(near.x[i], near.y[i], near.z[i]), cloud[near.index[i]]);
+  }
+  ASSERT_EQ(listed.size(), near.count);
+  ASSERT_TRUE(listed.contains(expected.front().index));
+  for (const Neighbour& neighbour : expected) {
+    if (std::sqrt(neighbour.squared_distance) < near.clear_radius * (1.0F - 1e-6F)) {
+      ASSERT_TRUE(listed.contains(neighbour.index));
+    }
+  }
+  const float reach = std::min(radius, std::sqrt(expected.front().squared_distance) + margin);
+  if (near.count < Neighbourhood::kCapacity) {
+    ASSERT_GE(near.clear_radius, reach * (1.0F - 1e-6F));
+  } else {
+    ASSERT_LE(near.clear_radius, std::max(reach, std::sqrt(expected[near.count - 1].squared_distance)));
+    ASSERT_GE(near.clear_radius, std::min(reach, std::sqrt(expected[near.count - 1].squared_distance)));
+  }
+}
+
+void expect_batches_equal_brute_force(const KdTree& tree, const Cloud& cloud, const Cloud& queries) {
+  std::vector<Neighbour> nearest(queries.size());
+  std::vector<Neighbourhood> near(queries.size());
+  for (const float radius : {0.3F, kInfinity}) {
+    tree.nearest(queries, radius, nearest);
+    for (const float margin : {0.0F, 0.02F, 0.5F}) {
+      tree.neighbourhoods(queries, radius, margin, near);
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        const std::vector<Neighbour> expected = brute_force(cloud, queries[i], radius);
+        ASSERT_EQ(nearest[i].index, expected.empty() ? Neighbour::kNone : expected.front().index);
+        ASSERT_NO_FATAL_FAILURE(expect_neighbourhood(near[i], cloud, expected, margin, radius));
+      }
+    }
+  }
+}
+
 void expect_equals_brute_force(const Cloud& cloud, const Cloud& queries) {
   const KdTree tree(cloud);
   std::vector<Neighbour> few;
-  Neighbourhood near;
   for (const Point& q : queries) {
     for (const float radius : {0.05F, 0.3F, 2.0F, kInfinity}) {
       const std::vector<Neighbour> expected = brute_force(cloud, q, radius);
@@ -74,16 +120,9 @@ void expect_equals_brute_force(const Cloud& cloud, const Cloud& queries) {
           ASSERT_EQ(few[i].squared_distance, expected[i].squared_distance);
         }
       }
-      tree.neighbourhood(q, radius, near);
-      ASSERT_EQ(near.count, std::min(Neighbourhood::kCapacity, expected.size()));
-      for (std::size_t i = 0; i < near.count; ++i) {
-        ASSERT_EQ(near.index[i], expected[i].index);
-        ASSERT_EQ(Point(near.x[i], near.y[i], near.z[i]), cloud[near.index[i]]);
-      }
-      const bool full = near.count == Neighbourhood::kCapacity;
-      ASSERT_EQ(near.clear_radius, full ? std::sqrt(expected[near.count - 1].squared_distance) : radius);
     }
   }
+  expect_batches_equal_brute_force(tree, cloud, queries);
 }
 
 TEST(KdTree, NearestDistanceEqualsBruteForce) {
@@ -155,6 +194,11 @@ TEST(KdTree, AnswersNothingWhereNothingCanBe) {
        {Point(kNan, 0.0F, 0.0F), Point(0.0F, kInfinity, 0.0F), Point(0.0F, 0.0F, -kInfinity)}) {
     EXPECT_FALSE(tree.nearest(q, kInfinity));
   }
+  std::vector<Neighbour> batch(3);
+  tree.nearest(Cloud{Point(kNan, 0.0F, 0.0F), Point::Zero(), Point(0.0F, kInfinity, 0.0F)}, 1.0F, batch);
+  EXPECT_EQ(batch[0].index, Neighbour::kNone);
+  EXPECT_EQ(batch[1].index, 0U);
+  EXPECT_EQ(batch[2].index, Neighbour::kNone);
   for (const float radius : {0.0F, -1.0F, kNan}) {
     EXPECT_FALSE(tree.nearest(Point::Zero(), radius));
   }
@@ -166,21 +210,37 @@ TEST(KdTree, EveryInstructionSetGivesTheSameBits) {
     GTEST_SKIP() << "this processor has no AVX2 to compare with";
   }
   const kdtree::Layout layout = kdtree::build(grid_cloud(30000, 15));
-  std::array<kdtree::Hit, 8> a_few{};
-  std::array<kdtree::Hit, 8> b_few{};
-  for (const Point& q : random_cloud(3000, Point(14.0F, 10.0F, 5.0F), 16)) {
-    kdtree::Hit a{};
-    kdtree::Hit b{};
-    ASSERT_EQ(kdtree::sse2_kernels().nearest(layout, q, 0.25F, a),
-              kdtree::avx2_kernels().nearest(layout, q, 0.25F, b));
-    ASSERT_EQ(a.slot, b.slot);
-    ASSERT_EQ(a.squared_distance, b.squared_distance);
-    const std::size_t count = kdtree::sse2_kernels().nearest_k(layout, q, 0.25F, a_few);
-    ASSERT_EQ(count, kdtree::avx2_kernels().nearest_k(layout, q, 0.25F, b_few));
-    for (std::size_t i = 0; i < count; ++i) {
-      ASSERT_EQ(a_few[i].slot, b_few[i].slot);
-      ASSERT_EQ(a_few[i].squared_distance, b_few[i].squared_distance);
-    }
+  const Cloud queries = random_cloud(3000, Point(14.0F, 10.0F, 5.0F), 16);
+  const kdtree::Kernels& sse2 = kdtree::sse2_kernels();
+  const kdtree::Kernels& avx2 = kdtree::avx2_kernels();
+  const auto same = [](const kdtree::Hit& a, const kdtree::Hit& b) {
+    return a.slot == b.slot && a.squared_distance == b.squared_distance;
+  };
+
+  std::vector<kdtree::Hit> a(queries.size());
+  std::vector<kdtree::Hit> b(queries.size());
+  sse2.nearest(layout, queries, 0.25F, a.data());
+  avx2.nearest(layout, queries, 0.25F, b.data());
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), same));
+
+  std::vector<Neighbourhood> a_near(queries.size());
+  std::vector<Neighbourhood> b_near(queries.size());
+  sse2.neighbourhoods(layout, queries, 0.5F, 0.1F, a_near.data());
+  avx2.neighbourhoods(layout, queries, 0.5F, 0.1F, b_near.data());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    ASSERT_EQ(a_near[i].count, b_near[i].count);
+    ASSERT_EQ(a_near[i].clear_radius, b_near[i].clear_radius);
+    ASSERT_TRUE(std::equal(a_near[i].index.begin(), a_near[i].index.begin() + a_near[i].count,
+                           b_near[i].index.begin()));
+  }
+
+  std::array<kdtree::Hit, 12> a_few{};
+  std::array<kdtree::Hit, 12> b_few{};
+  for (const Point& q : queries) {
+    const std::size_t count = sse2.nearest_k(layout, q, 0.25F, a_few);
+    ASSERT_EQ(count, avx2.nearest_k(layout, q, 0.25F, b_few));
+    ASSERT_TRUE(
+        std::equal(a_few.begin(), a_few.begin() + static_cast<std::ptrdiff_t>(count), b_few.begin(), same));
   }
 }
 
