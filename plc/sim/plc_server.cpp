@@ -20,16 +20,10 @@
 #include <utility>
 
 #include "plc/sim/listener.hpp"
+#include "plc/sim/modbus_protocol.hpp"
 
 namespace hulltrack::sim {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
-
-constexpr int kRegisters = 65536;
-constexpr std::size_t kMbapLength = 7;  // the function code follows it
-constexpr std::uint8_t kReadHoldingRegisters = 3;
-constexpr std::uint8_t kWriteMultipleRegisters = 16;
 
 struct Client {
   int fd;
@@ -81,69 +75,13 @@ void close_with_reset(int fd) {
   close(fd);
 }
 
-/// libmodbus' parser and its replies. Replies go into a socket pair first, where a fault can get at them.
-class Protocol {
- public:
-  Protocol() {
-    if (context_ == nullptr || registers_ == nullptr ||
-        socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair_) != 0) {
-      release();
-      throw std::runtime_error("cannot create the Modbus server: out of memory or descriptors");
-    }
-    modbus_set_response_timeout(context_, 0, 1000);  // libmodbus sleeps this long after some exceptions
-  }
-  ~Protocol() { release(); }
-  Protocol(const Protocol&) = delete;
-  Protocol& operator=(const Protocol&) = delete;
-
-  /// The bytes of one request; empty when the client is gone or does not speak Modbus.
-  Bytes receive(int fd) {
-    Bytes request(MODBUS_TCP_MAX_ADU_LENGTH);
-    modbus_set_socket(context_, fd);
-    const int length = modbus_receive(context_, request.data());
-    request.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
-    return request;
-  }
-
-  /// The reply's bytes, after a write has changed the registers. `exception` 0 = a normal reply.
-  Bytes reply(const Bytes& request, unsigned exception) {
-    modbus_set_socket(context_, pair_[0]);
-    if (exception != 0) {
-      modbus_reply_exception(context_, request.data(), exception);
-    } else {
-      modbus_reply(context_, request.data(), static_cast<int>(request.size()), registers_);
-    }
-    Bytes bytes(MODBUS_TCP_MAX_ADU_LENGTH);
-    const ssize_t length = recv(pair_[1], bytes.data(), bytes.size(), MSG_DONTWAIT);
-    bytes.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
-    return bytes;
-  }
-
-  [[nodiscard]] std::uint16_t& at(int address) {
-    return registers_->tab_registers[address & (kRegisters - 1)];
-  }
-
- private:
-  void release() {
-    if (context_ != nullptr) modbus_free(context_);
-    if (registers_ != nullptr) modbus_mapping_free(registers_);
-    for (const int fd : pair_) {
-      if (fd >= 0) close(fd);
-    }
-  }
-
-  modbus_t* context_ = modbus_new_tcp(nullptr, 0);
-  modbus_mapping_t* registers_ = modbus_mapping_new(0, 0, kRegisters, 0);
-  int pair_[2] = {-1, -1};
-};
-
 }  // namespace
 
 struct PlcServer::Impl {
   PlcServerConfig config;
   mutable std::mutex mutex;  // everything below but `thread`
   mutable std::condition_variable written;
-  Protocol protocol;
+  ModbusProtocol protocol;
   Listener listener;
   int wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   bool stopping = false;
@@ -260,7 +198,7 @@ struct PlcServer::Impl {
   void serve_client(int fd) {
     do {
       const Bytes request = protocol.receive(fd);
-      if (request.size() <= kMbapLength) {
+      if (request.empty()) {
         drop_client(fd, false);
         return;
       }
@@ -273,7 +211,7 @@ struct PlcServer::Impl {
   bool answer(int fd, const Bytes& request) {
     Client& client = *std::ranges::find(clients, fd, &Client::fd);
     send_all(fd, std::exchange(client.held_back, {}));
-    const std::uint8_t function = request[kMbapLength];
+    const std::uint8_t function = function_of(request);
     const bool met = fault_meets(request);
     const PlcFault active = met ? fault : PlcFault::none;
     if (active == PlcFault::reset) drop_client(fd, true);
@@ -289,6 +227,7 @@ struct PlcServer::Impl {
 
   /// Sends the reply, mangled as the fault says.
   void deliver(Client& client, Bytes reply, PlcFault active) {
+    if (reply.empty()) return;
     const std::span<const std::uint8_t> whole(reply);
     switch (active) {
       case PlcFault::late_reply:
@@ -326,11 +265,8 @@ struct PlcServer::Impl {
     }
   }
 
-  [[nodiscard]] static int address_of(const Bytes& request) { return request[8] << 8 | request[9]; }
-  [[nodiscard]] static int count_of(const Bytes& request) { return request[10] << 8 | request[11]; }
-
   [[nodiscard]] bool fault_meets(const Bytes& request) const {
-    const std::uint8_t function = request[kMbapLength];
+    const std::uint8_t function = function_of(request);
     if (fault == PlcFault::none) return false;
     if (fault == PlcFault::write_refused) return function == kWriteMultipleRegisters;
     if (affects_values(fault))
@@ -346,7 +282,7 @@ struct PlcServer::Impl {
 
   void record_write(const Bytes& request) {
     const int base = config.write.base;
-    if (request[kMbapLength] != kWriteMultipleRegisters || address_of(request) > base ||
+    if (function_of(request) != kWriteMultipleRegisters || address_of(request) > base ||
         address_of(request) + count_of(request) < base + kWriteBlockSize) {
       return;
     }
