@@ -7,7 +7,7 @@
 #include <csignal>
 #include <vector>
 
-#include "plc_bench_setup.hpp"
+#include "tests/integration/plc/plc_bench_setup.hpp"
 
 namespace hulltrack {
 namespace {

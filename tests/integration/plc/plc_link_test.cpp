@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "plc_bench_setup.hpp"
+#include "tests/integration/plc/plc_bench_setup.hpp"
 
 namespace hulltrack {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "plc_bench_setup.hpp"
+#include "tests/integration/plc/plc_bench_setup.hpp"
 #include "tests/support/pymodbus_peer.hpp"
 
 namespace hulltrack {
