@@ -43,12 +43,20 @@ std::optional<RayHit> BerthWorld::cast(const Sweep& sweep, double t, const Point
     const Eigen::Matrix<float, 3, 4> T = (1.0F - s) * sweep.at_begin[body] + s * sweep.at_end[body];
     const Point origin = T.leftCols<3>() * origin_L + T.col(3);
     const Point direction = T.leftCols<3>() * direction_L;
-    if (const auto hit = bodies_[body].cast(origin, direction, reach)) {
-      nearest = hit;
-      reach = hit->distance;
-    }
+    const auto hit = bodies_[body].cast(origin, direction, reach);
+    if (!hit) continue;
+    if (hit->material == Material::water && displaced(sweep, s, origin_L + hit->distance * direction_L))
+      continue;
+    nearest = hit;
+    reach = hit->distance;
   }
   return nearest;
+}
+
+bool BerthWorld::displaced(const Sweep& sweep, float s, const Point& p_L) const {
+  const Eigen::Matrix<float, 3, 4> T_H_L = (1.0F - s) * sweep.at_begin[kHull] + s * sweep.at_end[kHull];
+  constexpr float kBelowAnyKeel = 20.0F;  // m
+  return bodies_[kHull].blocked(T_H_L.leftCols<3>() * p_L + T_H_L.col(3), {0.0F, 0.0F, -1.0F}, kBelowAnyKeel);
 }
 
 }  // namespace hulltrack

@@ -40,6 +40,10 @@ class BerthWorld {
  private:
   using Placement = std::array<Eigen::Matrix<float, 3, 4>, Sweep::kBodies>;
   [[nodiscard]] Placement placement(double t) const;
+  /// Is there no water at a point of the river's level because the hull is below it (inside a hold)?
+  [[nodiscard]] bool displaced(const Sweep& sweep, float s, const Point& p_L) const;
+
+  static constexpr std::size_t kHull = 1;  // boom, hull, berth, portal
 
   std::array<RayScene, Sweep::kBodies> bodies_;
   const LoaderMotion* loader_;

@@ -37,9 +37,9 @@ MachineConfig loader_machine() {
 }
 
 LoaderLimits loader_limits() {
-  return {.travel = {-28.0, 30.0, 0.4, 0.12, 1.0},
-          .slew = {radians(56.0), radians(124.0), radians(1.0), radians(0.35), radians(3.0)},
-          .luff = {radians(-5.0), radians(5.0), radians(0.28), radians(0.25), radians(0.6)}};
+  return {.travel = {-28.0, 30.0, 0.4, 0.12, 1.0, 8.0},
+          .slew = {radians(56.0), radians(124.0), radians(1.0), radians(0.35), radians(3.0), radians(25.0)},
+          .luff = {radians(-5.0), radians(5.0), radians(0.28), radians(0.25), radians(0.6), radians(4.0)}};
 }
 
 TriangleMesh boom_mesh() {

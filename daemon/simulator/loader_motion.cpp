@@ -1,6 +1,7 @@
 #include "daemon/simulator/loader_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "daemon/simulator/random.hpp"
@@ -12,12 +13,26 @@ constexpr double kFirstMove = 3.0;     // s of rest at the beginning
 constexpr double kShortestPour = 1.5;  // s between two moves
 constexpr double kLongestPour = 7.0;
 
-/// A target inside the limits at least shortest_move away from where the axis is.
+/// A target inside the limits that is one move away.
 double draw_target(const AxisLimits& axis, double from, RandomStream& random) {
-  double target = random.uniform(axis.low, axis.high);
-  while (std::abs(target - from) < axis.shortest_move) target = random.uniform(axis.low, axis.high);
+  const auto draw = [&] {
+    return random.uniform(std::max(axis.low, from - axis.longest_move),
+                          std::min(axis.high, from + axis.longest_move));
+  };
+  double target = draw();
+  while (std::abs(target - from) < axis.shortest_move) target = draw();
   return target;
 }
+
+/// What a loader does in turn to fill a hold: which axes move together.
+struct Step {
+  bool travel, slew, luff;
+};
+constexpr std::array<Step, 5> kSteps = {{{false, true, false},
+                                         {false, true, true},
+                                         {true, false, false},
+                                         {false, false, true},
+                                         {true, true, false}}};
 
 }  // namespace
 
@@ -52,6 +67,7 @@ LoaderMotion::LoaderMotion(const LoaderLimits& limits, double duration, std::uin
   start_ = {inside(limits.travel), inside(limits.slew), inside(limits.luff)};
   Joints now = start_;
   double t = kFirstMove;
+  std::size_t step = random.bits() % kSteps.size();
   while (t < duration) {
     double end = t;
     const auto move = [&](Track& track, const AxisLimits& axis, double& position) {
@@ -60,10 +76,10 @@ LoaderMotion::LoaderMotion(const LoaderLimits& limits, double duration, std::uin
       position = target;
       end = std::max(end, t + track.back().duration());
     };
-    const double kind = random.uniform();
-    if (kind < 0.55) move(slew_, limits.slew, now.theta_r);
-    if (kind > 0.40 && kind < 0.75) move(luff_, limits.luff, now.theta_p);
-    if (kind > 0.65) move(travel_, limits.travel, now.d_x);
+    const Step& now_moves = kSteps.at(step++ % kSteps.size());
+    if (now_moves.slew) move(slew_, limits.slew, now.theta_r);
+    if (now_moves.luff) move(luff_, limits.luff, now.theta_p);
+    if (now_moves.travel) move(travel_, limits.travel, now.d_x);
     t = end + random.uniform(kShortestPour, kLongestPour);
   }
 }

@@ -17,7 +17,7 @@ namespace hulltrack {
 struct AxisLimits {
   double low, high;
   double speed, acceleration;
-  double shortest_move;  // a move below this is not worth it
+  double shortest_move, longest_move;  // of one move
 };
 
 struct LoaderLimits {

@@ -27,9 +27,9 @@ struct SimulationOptions {
   std::string scenario = "berth";
   std::string lidar_model = "velodyne_vlp16";
   std::uint64_t seed = 1;
-  int frames = 0;                // 0 = the scenario's own number; at most kMaxFrames
-  std::optional<Joints> parked;  // the loader stands here and never moves
-  EncoderConfig encoders;
+  int frames = 0;                               // 0 = the scenario's own number; at most kMaxFrames
+  std::optional<Joints> parked = std::nullopt;  // the loader stands here and never moves
+  EncoderConfig encoders = {};
 };
 
 class SimulatedBerth {

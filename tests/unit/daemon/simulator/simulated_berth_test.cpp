@@ -1,0 +1,204 @@
+#include "daemon/simulator/simulated_berth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/kinematics/joint_history.hpp"
+#include "daemon/simulator/loader_machine.hpp"
+#include "daemon/simulator/simulated_scans.hpp"
+#include "daemon/simulator/survey.hpp"
+
+namespace hulltrack {
+namespace {
+
+std::unique_ptr<SimulatedBerth> make(const SimulationOptions& options) {
+  auto berth = SimulatedBerth::create(options);
+  EXPECT_TRUE(berth.ok()) << (berth.ok() ? "" : berth.error().message);
+  return std::move(berth).value();
+}
+
+/// Distance from p to a triangle, by clamping to its edges (Ericson, Real-Time Collision Detection, 5.1.5).
+float distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+  const Point normal = (b - a).cross(c - a).normalized();
+  const Point q = p - normal * normal.dot(p - a);
+  const bool inside = (b - a).cross(q - a).dot(normal) >= 0.0F && (c - b).cross(q - b).dot(normal) >= 0.0F &&
+                      (a - c).cross(q - c).dot(normal) >= 0.0F;
+  if (inside) return std::abs(normal.dot(p - a));
+  const auto to_edge = [&](const Point& u, const Point& v) {
+    const float t = std::clamp((p - u).dot(v - u) / (v - u).squaredNorm(), 0.0F, 1.0F);
+    return (p - u - t * (v - u)).norm();
+  };
+  return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
+}
+
+float distance_to_mesh(const TriangleMesh& mesh, const Point& p) {
+  float nearest = 1e9F;
+  for (const auto& t : mesh.triangles) {
+    const Point &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    const Point low = a.cwiseMin(b).cwiseMin(c).array() - nearest;
+    const Point high = a.cwiseMax(b).cwiseMax(c).array() + nearest;
+    if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
+    nearest = std::min(nearest, distance_to_triangle(p, a, b, c));
+  }
+  return nearest;
+}
+
+TEST(SimulatedBerth, SameSeedSameBytesOtherSeedOtherBytes) {
+  const auto one = make({.seed = 3, .frames = 5});
+  const auto same = make({.seed = 3, .frames = 5});
+  const auto other = make({.seed = 4, .frames = 5});
+  // In another order: a datagram does not depend on which was asked for before.
+  EXPECT_EQ(one->packet(200), same->packet(200));
+  EXPECT_EQ(same->packet(17), one->packet(17));
+  EXPECT_NE(one->packet(17), other->packet(17));
+  EXPECT_NE(one->packet(17), one->packet(18));
+}
+
+TEST(SimulatedBerth, UnknownNamesAreErrorsThatNameTheChoice) {
+  const auto no_scenario = SimulatedBerth::create({.scenario = "typhoon"});
+  ASSERT_FALSE(no_scenario.ok());
+  EXPECT_NE(no_scenario.error().message.find("wrong-ship"), std::string::npos);
+  const auto no_model = SimulatedBerth::create({.lidar_model = "sundial"});
+  ASSERT_FALSE(no_model.ok());
+  EXPECT_NE(no_model.error().message.find("velodyne_vlp32c"), std::string::npos);
+}
+
+struct HullShare {
+  int on = 0;
+  int off = 0;
+};
+
+/// How many returns of the last two frames lie on the ship when taken to H with the joints of their own
+/// firing time and the hull pose of `delay` later? At the end of `berth` the ship moves at 0.5 m/s.
+HullShare share_on_hull(const SimulatedBerth& berth, Nanoseconds delay) {
+  const TriangleMesh hull = berth.hull_mesh_H();
+  const Box region = *berth.hull_config().region;
+  const auto boxes = berth.lidar_config().exclude;
+  std::vector<sim::VelodyneFiring> firings;
+  HullShare share;
+  for (std::uint64_t packet = berth.packets() - 150; packet < berth.packets(); packet += 3) {
+    const auto returns = berth.returns(packet);
+    berth.encoder().firings(packet, firings);
+    for (std::size_t i = packet % 5; i < returns.size(); i += 5) {
+      if (returns[i].range <= 0.0) continue;
+      const Eigen::Vector3d p_L =
+          firings[i].direction * returns[i].range + Eigen::Vector3d(0, 0, firings[i].origin_z);
+      const Joints joints = berth.true_joints(firings[i].time);
+      const Eigen::Vector3d p_W = lidar_pose(loader_machine(), joints, berth.sensor().mount) * p_L;
+      const bool own = std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) {
+        return Box{{static_cast<float>(b[0]), static_cast<float>(b[1]), static_cast<float>(b[2])},
+                   {static_cast<float>(b[3]), static_cast<float>(b[4]), static_cast<float>(b[5])}}
+            .contains(p_L.cast<float>());
+      });
+      const bool on_water = p_W.z() < -4.5 && p_W.y() > 21.0;
+      if (own || on_water || !region.contains(p_W.cast<float>())) continue;
+      const Eigen::Vector3d p_H = berth.T_W_H(firings[i].time + delay).inverse() * p_W;
+      (distance_to_mesh(hull, p_H.cast<float>()) < 0.07F ? share.on : share.off) += 1;
+    }
+  }
+  return share;
+}
+
+/// The law of the whole simulator.
+TEST(SimulatedBerth, EveryHullReturnLiesOnTheHullAtItsOwnFiringTime) {
+  for (const char* model : {"velodyne_vlp16", "velodyne_vlp32c"}) {
+    const auto berth = make({.scenario = "berth", .lidar_model = model, .seed = 11});
+    const HullShare own_time = share_on_hull(*berth, Nanoseconds{0});
+    EXPECT_GT(own_time.on, 400) << model;
+    EXPECT_LT(own_time.off, 0.03 * own_time.on) << model << ": more than noise and mixed pixels explain";
+    const HullShare half_a_second_late = share_on_hull(*berth, std::chrono::milliseconds(500));
+    EXPECT_GT(half_a_second_late.off, 2 * own_time.off + 20) << model << ": the check sees nothing";
+  }
+}
+
+TEST(SimulatedBerth, RangeNoiseHasItsStatedSpread) {
+  // Against the noise-free distance of the same ray.
+  const auto berth = make({.scenario = "static", .seed = 2, .frames = 3});
+  std::vector<sim::VelodyneFiring> firings;
+  double sum = 0.0;
+  double squares = 0.0;
+  int count = 0;
+  for (std::uint64_t packet = 0; packet < 200; packet += 3) {
+    const auto returns = berth->returns(packet);
+    berth->encoder().firings(packet, firings);
+    const auto sweep =
+        berth->world().sweep(to_seconds(firings.front().time), to_seconds(firings.back().time));
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const auto hit = berth->world().cast(sweep, to_seconds(firings[i].time),
+                                           {0, 0, static_cast<float>(firings[i].origin_z)},
+                                           firings[i].direction.cast<float>(), 100.0F);
+      if (!hit || returns[i].range <= 0.0 || hit->cos_incidence < 0.7F) continue;
+      const double error = returns[i].range - static_cast<double>(hit->distance);
+      if (std::abs(error) > 0.1) continue;  // an edge in the beam
+      sum += error;
+      squares += error * error;
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 3000);
+  EXPECT_NEAR(sum / count, 0.0, 0.003);
+  EXPECT_NEAR(std::sqrt(squares / count), berth->sensor().range_sigma, 0.004);
+}
+
+TEST(SimulatedBerth, MapLiesOnTheEmptyShipOnePointAVoxel) {
+  const auto berth = make({.seed = 5, .frames = 1});
+  const Cloud map = berth->map();
+  EXPECT_GT(map.size(), 1'000'000U);
+  EXPECT_LT(map.size(), 2'000'000U);
+  const TriangleMesh ship = berth->map_mesh_H();
+  std::set<std::array<int, 3>> voxels;
+  for (const Point& p : map) {
+    const Eigen::Vector3i voxel = (p / 0.05F).array().floor().cast<int>();
+    EXPECT_TRUE(voxels.insert({voxel.x(), voxel.y(), voxel.z()}).second);
+  }
+  for (std::size_t i = 0; i < map.size(); i += 4999) EXPECT_LT(distance_to_mesh(ship, map[i]), 0.03F);
+}
+
+TEST(Survey, SeesOnlyWhatIsNotBehindSomethingAndIsTheSameForASeed) {
+  TriangleMesh mesh;
+  add_box(mesh, {-2.0F, -2.0F, 0.0F}, {2.0F, 2.0F, 1.0F}, Material::steel);
+  add_box(mesh, {-9.0F, -9.0F, -1.0F}, {9.0F, 9.0F, 0.0F}, Material::steel);
+  const std::vector<Point> above = {{0.0F, 0.0F, 10.0F}};
+  const Cloud map = survey(mesh, above, 8);
+  EXPECT_GT(map.size(), 60'000U);
+  for (const Point& p : map) {
+    // The box hides the floor below it and casts a shadow of 2.2 m half width; its sides are in the shadow.
+    const bool on_top = p.head<2>().cwiseAbs().maxCoeff() < 2.03F && std::abs(p.z() - 1.0F) < 0.03F;
+    const bool on_floor = p.head<2>().cwiseAbs().maxCoeff() > 2.19F && std::abs(p.z()) < 0.03F;
+    EXPECT_TRUE(on_top || on_floor) << p.transpose();
+  }
+  EXPECT_EQ(survey(mesh, above, 8), map);
+  EXPECT_NE(survey(mesh, above, 9), map);
+}
+
+TEST(SimulatedBerth, AFullRunHasItsFramesAndJointsBracketEveryOne) {
+  for (const char* model : {"velodyne_vlp16", "velodyne_vlp32c"}) {
+    const auto berth = make({.lidar_model = model, .seed = 6, .frames = 7});
+    const auto scans = simulated_scans(*berth, 0, 7);
+    ASSERT_TRUE(scans.ok()) << scans.error().message;
+    ASSERT_EQ(scans->size(), 7U) << model;
+    JointHistory history;
+    for (const JointSample& sample : simulated_joint_samples(*berth)) ASSERT_TRUE(history.add(sample));
+    for (std::size_t i = 0; i < scans->size(); ++i) {
+      const Scan& scan = (*scans)[i];
+      EXPECT_EQ(scan.frame_number, i);
+      EXPECT_EQ(scan.mid_time(), SimulatedBerth::kEpoch + SimulatedBerth::kFramePeriod * static_cast<int>(i) +
+                                     SimulatedBerth::kFramePeriod / 2);
+      EXPECT_GT(scan.points.size(), 10'000U);
+      EXPECT_EQ(history.covers(scan.first_firing, scan.last_firing), JointHistory::Lookup::ok);
+    }
+  }
+}
+
+TEST(SimulatedBerth, AParkedLoaderPresentsConstants) {
+  const auto berth = make({.frames = 10, .parked = Joints{3.0, radians(90.0), radians(1.0)}});
+  const Joints first = berth->plc(Nanoseconds{0}).joints;
+  EXPECT_NEAR(first.d_x, 3.0, 0.0005);
+  const Joints later = berth->plc(std::chrono::seconds(1)).joints;
+  EXPECT_EQ(first.theta_r, later.theta_r);
+}
+
+}  // namespace
+}  // namespace hulltrack
