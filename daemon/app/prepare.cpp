@@ -7,7 +7,6 @@
 #include "core/io/map_file.hpp"
 #include "daemon/config/read_config.hpp"
 #include "lidar_drivers/model_registry.hpp"
-#include "lidar_drivers/scan_builder.hpp"
 
 namespace hulltrack {
 namespace {
@@ -19,12 +18,23 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
   }
   Preparation preparation;
   const Config& config = *reading.config;
-  if (const auto builder = ScanBuilder::create(config.lidars, config.framing); !builder) {
-    preparation.problems.push_back({config_file.string(), 0, builder.error().message});
+  const auto complain = [&](const std::string& key, const std::string& message) {
+    preparation.problems.push_back(reading.problem_with(config_file, key, message));
+  };
+  for (std::size_t i = 0; i < config.lidars.size(); ++i) {
+    const LidarConfig& lidar = config.lidars[i];
+    if (const auto decoder = find_lidar_model(lidar.model)->make_decoder({}, lidar.calibration); !decoder) {
+      complain("lidar." + std::to_string(i) + ".calibration", decoder.error().message);
+    }
   }
   Result<MapFile> map = read_map_file(config.map_file);
   if (!map) {
-    preparation.problems.push_back({config_file.string(), 0, "hull.map: " + map.error().message});
+    complain("hull.map", map.error().message);
+  } else if (const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
+             map->cloud.size() < least) {
+    complain("hull.map", config.map_file.string() + ": has " + std::to_string(map->cloud.size()) +
+                             " points, fewer than health.min_matched = " + std::to_string(least) +
+                             "; no scan could ever match it: make a denser map");
   }
   if (preparation.problems.empty()) {
     const std::size_t dropped = map->dropped;

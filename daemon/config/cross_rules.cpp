@@ -142,8 +142,8 @@ void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
              "is \"" + lidar.name + "\", the name of another LiDAR too; give each a name of its own"});
       }
       if (collide(lidar, lidars[j])) {
-        broken.push_back({{section + ".port", section + ".source", section + ".bind", other + ".port",
-                           other + ".source", other + ".bind"},
+        broken.push_back({{section + ".port", section, section + ".source", section + ".bind",
+                           other + ".port", other + ".source", other + ".bind"},
                           "is " + std::to_string(lidar.port) + ", where LiDAR \"" + lidars[j].name +
                               "\" listens too; give each a port of its own, or a `source` to each of them"});
       }

@@ -28,16 +28,18 @@ std::string without_index(const std::string& key) {
   return out;
 }
 
-/// The line of the first key that stands in the file, else of the nearest table around them.
-int line_to_blame(const BrokenRule& rule, const Document& document) {
-  for (const std::string& key : rule.keys) {
-    if (const auto found = document.lines.find(key); found != document.lines.end()) {
+using Lines = std::map<std::string, int>;
+
+/// Of the first key that stands in the file, else of the nearest table around the first of them.
+int line_to_blame(const std::vector<std::string>& keys, const Lines& lines) {
+  for (const std::string& key : keys) {
+    if (const auto found = lines.find(key); found != lines.end()) {
       return found->second;
     }
   }
-  for (std::string place = rule.keys.front(); place.find('.') != std::string::npos;) {
+  for (std::string place = keys.front(); place.find('.') != std::string::npos;) {
     place.erase(place.rfind('.'));
-    if (const auto found = document.lines.find(place); found != document.lines.end()) {
+    if (const auto found = lines.find(place); found != lines.end()) {
       return found->second;
     }
   }
@@ -50,8 +52,8 @@ void add_broken_rules(Document& document, const std::string& file) {
       return document.bad_keys.contains(key);
     });
     if (!known_bad) {
-      document.problems.push_back(
-          {file, line_to_blame(rule, document), without_index(rule.keys.front()) + ": " + rule.message});
+      document.problems.push_back({file, line_to_blame(rule.keys, document.lines),
+                                   without_index(rule.keys.front()) + ": " + rule.message});
     }
   }
 }
@@ -83,33 +85,38 @@ void resolve_paths(Config& config, const std::filesystem::path& file) {
 
 }  // namespace
 
+Problem ConfigReading::problem_with(const std::filesystem::path& file, const std::string& key,
+                                    const std::string& message) const {
+  return {file.string(), line_to_blame({key}, lines), without_index(key) + ": " + message};
+}
+
 ConfigReading parse_config(std::string_view text, const std::filesystem::path& file,
                            const std::vector<std::string>& models) {
   const std::string name = file.string();
   if (text.size() > kMaxFile) {
-    return {std::nullopt, {{name, 0, "is larger than 1 MiB; is this the configuration?"}}};
+    return {std::nullopt, {{name, 0, "is larger than 1 MiB; is this the configuration?"}}, {}};
   }
   if (const auto long_line = find_long_line(text, name)) {
-    return {std::nullopt, {*long_line}};
+    return {std::nullopt, {*long_line}, {}};
   }
   Document document = read_document(text, name, models);
   if (document.lines.empty()) {  // not even TOML
-    return {std::nullopt, std::move(document.problems)};
+    return {std::nullopt, std::move(document.problems), std::move(document.lines)};
   }
   add_broken_rules(document, name);
   if (!document.problems.empty()) {
     std::stable_sort(document.problems.begin(), document.problems.end(),
                      [](const Problem& a, const Problem& b) { return a.line < b.line; });
-    return {std::nullopt, std::move(document.problems)};
+    return {std::nullopt, std::move(document.problems), std::move(document.lines)};
   }
   resolve_paths(document.config, file);
-  return {std::move(document.config), {}};
+  return {std::move(document.config), {}, std::move(document.lines)};
 }
 
 ConfigReading read_config(const std::filesystem::path& file, const std::vector<std::string>& models) {
   const auto failed = [&](const std::string& why) {
-    return ConfigReading{std::nullopt,
-                         {{file.string(), 0, "cannot be read: " + why + "; is this the right file?"}}};
+    return ConfigReading{
+        std::nullopt, {{file.string(), 0, "cannot be read: " + why + "; is this the right file?"}}, {}};
   };
   std::error_code code;
   if (std::filesystem::is_directory(file, code)) {

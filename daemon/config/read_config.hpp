@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,8 +17,14 @@
 namespace hulltrack {
 
 struct ConfigReading {
-  std::optional<Config> config;   // present if and only if problems is empty
-  std::vector<Problem> problems;  // in order of their lines
+  std::optional<Config> config;      // present if and only if problems is empty
+  std::vector<Problem> problems;     // in order of their lines
+  std::map<std::string, int> lines;  // of every key and section that the file has: "hull.map", "lidar.0"
+
+  /// A problem that shows only later, such as a map that cannot be read: said of `key` ("hull.map",
+  /// "lidar.0.calibration"), at its line or else that of its section.
+  [[nodiscard]] Problem problem_with(const std::filesystem::path& file, const std::string& key,
+                                     const std::string& message) const;
 };
 
 /// `models`: every LiDAR model name of this build; a `model` outside it is a problem.
