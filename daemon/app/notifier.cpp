@@ -24,7 +24,12 @@ void Notifier::status(const std::string& line) {
   }
 }
 
-void Notifier::watchdog() { sd_notify(0, "WATCHDOG=1"); }
+void Notifier::watchdog(SteadyTime now) {
+  if (watchdog_period_ && (!last_watchdog_ || now - *last_watchdog_ >= *watchdog_period_)) {
+    sd_notify(0, "WATCHDOG=1");
+    last_watchdog_ = now;
+  }
+}
 
 void Notifier::reloading() { sd_notify(0, ("RELOADING=1\nMONOTONIC_USEC=" + monotonic_usec()).c_str()); }
 

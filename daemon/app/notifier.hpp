@@ -1,7 +1,8 @@
 // What the service manager is told: sd_notify(3), in the service's words.
 //
-// Without a manager (no NOTIFY_SOCKET) every call does nothing. Never blocks noticeably, never fails:
-// a manager that does not listen is no reason to stop tracking. Thread rule: the main thread only.
+// Without a manager (no NOTIFY_SOCKET) every call does nothing, and no failure is reported: a manager that
+// is not there is no reason to stop tracking. One that is there but does not read may hold a call up, so
+// only the main thread calls, which no pose waits for.
 #pragma once
 
 #include <optional>
@@ -16,14 +17,17 @@ class Notifier {
   void ready();
   /// One line for `systemctl status`; sent only when it differs from the last.
   void status(const std::string& line);
-  void watchdog();
+  /// Everything makes progress; sent as often as the manager wants it, however often it is called.
+  void watchdog(SteadyTime now);
   void reloading();
   void stopping();
 
-  /// How often watchdog() must be called (a third of WatchdogSec=); nothing if no watchdog is set.
+  /// A third of WatchdogSec=; nothing if no watchdog is set.
   [[nodiscard]] static std::optional<Nanoseconds> watchdog_period();
 
  private:
+  std::optional<Nanoseconds> watchdog_period_ = watchdog_period();
+  std::optional<SteadyTime> last_watchdog_;
   std::string last_status_;
 };
 

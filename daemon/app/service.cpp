@@ -121,7 +121,7 @@ void Service::swap_to(Prepared next) {
 void Service::supervise(SteadyTime now) {
   const auto overdue = session_->watch().overdue(now);
   if (!overdue) {
-    notifier_.watchdog();
+    notifier_.watchdog(now);
     overdue_.reset();
   } else if (overdue_ != overdue->thread) {
     overdue_ = overdue->thread;

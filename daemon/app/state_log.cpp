@@ -60,8 +60,11 @@ std::string figures(const WriteBlock& registers) {
   if (registers.state == State::starting || registers.q1_m >= kUnknownDistance) {
     return {};
   }
-  return text("Q1 %.3f m, %u points matched, pose %.0f ms old", registers.q1_m, registers.matched,
-              registers.age_ms);
+  std::string line = text("Q1 %.3f m, %u points matched", registers.q1_m, registers.matched);
+  if (registers.age_ms < kUnknownAgeMs) {
+    line += text(", pose %.0f ms old", registers.age_ms);
+  }
+  return line;
 }
 
 }  // namespace

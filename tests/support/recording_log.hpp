@@ -1,6 +1,7 @@
-// A log sink that keeps its lines, for tests of what the log says.
+// A log sink that keeps its lines, for tests of what the log says. Any thread may write.
 #pragma once
 
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,31 @@ class RecordingLog final : public LogSink {
     std::string text;
   };
 
-  void write(LogLevel level, std::string_view line) override { lines.push_back({level, std::string(line)}); }
+  void write(LogLevel level, std::string_view line) override {
+    const std::lock_guard lock(mutex_);
+    lines.push_back({level, std::string(line)});
+  }
 
   /// The newest line, or "".
-  [[nodiscard]] std::string last() const { return lines.empty() ? "" : lines.back().text; }
+  [[nodiscard]] std::string last() const {
+    const std::lock_guard lock(mutex_);
+    return lines.empty() ? "" : lines.back().text;
+  }
 
-  std::vector<Line> lines;
+  /// How many lines contain `part`.
+  [[nodiscard]] std::size_t count(const std::string& part) const {
+    const std::lock_guard lock(mutex_);
+    std::size_t found = 0;
+    for (const Line& line : lines) {
+      found += line.text.find(part) != std::string::npos ? 1 : 0;
+    }
+    return found;
+  }
+
+  std::vector<Line> lines;  // read it while nobody writes
+
+ private:
+  mutable std::mutex mutex_;
 };
 
 }  // namespace hulltrack

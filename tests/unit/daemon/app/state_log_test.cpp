@@ -52,7 +52,8 @@ TEST(StateLog, APoseOnTheEdgeOfALimitDoesNotFillTheLog) {
     states.update(block_of(state), "", SteadyTime{} + milliseconds(100) * frame);
   }
   EXPECT_LE(log.lines.size(), 2U * 6U) << "each of two states at most once in 10 s, for a minute";
-  EXPECT_THAT(log.lines[2].text, HasSubstr("state tracking after 9.9 s of degraded and 98 changes in between"));
+  EXPECT_THAT(log.lines[2].text,
+              HasSubstr("state tracking after 9.9 s of degraded and 98 changes in between"));
 }
 
 TEST(StateLog, TheLastWordIsTrueWithinTenSeconds) {

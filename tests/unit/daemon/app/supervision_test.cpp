@@ -123,21 +123,27 @@ TEST(Notifier, SpeaksTheProtocolOfTheServiceManager) {
   EXPECT_EQ(manager.next(), "STATUS=tracking 10.0 Hz");
   notifier.status("tracking 10.0 Hz");
   EXPECT_EQ(manager.next(), "") << "an unchanged status is not repeated";
-  notifier.watchdog();
-  EXPECT_EQ(manager.next(), "WATCHDOG=1");
   notifier.reloading();
   EXPECT_EQ(manager.next().rfind("RELOADING=1\nMONOTONIC_USEC=", 0), 0U);
   notifier.stopping();
   EXPECT_EQ(manager.next(), "STOPPING=1\nSTATUS=stopping");
 }
 
-TEST(Notifier, FeedsThreeTimesAWatchdogPeriod) {
-  unsetenv("WATCHDOG_USEC");
-  EXPECT_FALSE(Notifier::watchdog_period());
+TEST(Notifier, FeedsThreeTimesAWatchdogPeriodHoweverOftenItIsCalled) {
+  NotifySocket manager;
   setenv("WATCHDOG_USEC", "900000", 1);
   unsetenv("WATCHDOG_PID");
-  EXPECT_EQ(Notifier::watchdog_period(), milliseconds(300));
+  Notifier notifier;
+  int fed = 0;
+  for (int call = 0; call < 90; ++call) {  // nine seconds in steps of 100 ms
+    notifier.watchdog(at(milliseconds(100) * call));
+    fed += manager.next() == "WATCHDOG=1" ? 1 : 0;
+  }
+  EXPECT_EQ(fed, 30);
   unsetenv("WATCHDOG_USEC");
+  Notifier unwatched;
+  unwatched.watchdog(at(milliseconds(0)));
+  EXPECT_EQ(manager.next(), "");
 }
 
 TEST(Signals, BecomeValuesAndABrokenPipeIsIgnored) {

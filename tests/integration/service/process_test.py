@@ -1,0 +1,199 @@
+"""hulltrackd as a process: start, stop, reload, exit codes, what the service manager and the PLC see."""
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, ROOM_LIDAR = sys.argv[1], sys.argv[2]
+sys.path.insert(0, sys.argv[3])
+from service_process import Plc, Process, Service, free_port  # noqa: E402 (path comes from the command line)
+
+CONFIG = """
+[plc]
+host = "127.0.0.1"
+port = {plc_port}
+
+[[lidar]]
+model = "velodyne_vlp16"
+bind = "127.0.0.1"
+port = {lidar_port}
+mount = {{ xyz = [0.2, -0.3, 0.5], rpy_deg = [35.0, 20.0, 10.0] }}
+
+[hull]
+map = "room.pcd"
+"""
+
+
+def healthy(record):
+    return record["health"] == 1
+
+
+class ServiceTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.TemporaryDirectory()
+        cls.map = pathlib.Path(cls.shared.name) / "room.pcd"
+        subprocess.run([ROOM_LIDAR, "--map", cls.map], check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.shared.cleanup()
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "room.pcd").symlink_to(self.map)
+        self.config = self.folder / "hulltrackd.toml"
+        self.lidar_port = free_port(socket.SOCK_DGRAM)
+
+    def write_config(self, plc_port, more=""):
+        self.config.write_text(CONFIG.format(plc_port=plc_port, lidar_port=self.lidar_port) + more,
+                               encoding="utf-8")
+
+    def start(self, process):
+        self.addCleanup(process.close)
+        return process
+
+    def start_all(self):
+        plc = self.start(Plc())
+        self.start(Process([ROOM_LIDAR, self.lidar_port]))
+        self.write_config(plc.port)
+        service = self.start(Service(PROGRAM, self.config, self.folder))
+        service.wait_ready()
+        plc.wait_for(healthy, "with health 1")
+        return plc, service
+
+    def run_to_end(self, *arguments):
+        return subprocess.run([PROGRAM, "--config", self.config, *arguments], capture_output=True, text=True,
+                              check=False, timeout=60)
+
+    def test_tracks_and_stops_with_health_0_and_state_7(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            with self.subTest(number):
+                plc, service = self.start_all()
+                service.wait_for_notice(lambda notice: notice.startswith("STATUS=tracking"), "with the status")
+                service.signal(number)
+                service.wait_for_notice(lambda notice: "STOPPING=1" in notice, "STOPPING=1")
+                self.assertEqual(service.wait(), 0, service.err.all)
+                last = plc.writes()[-1]
+                self.assertEqual((last["health"], last["state"]), (0, 7))
+                self.assertEqual(last["heartbeat"], last["heartbeat_copy"])
+                service.close()
+                (self.folder / "notify").unlink()
+                self.lidar_port = free_port(socket.SOCK_DGRAM)
+
+    def test_starts_and_is_ready_without_plc_and_lidar(self):
+        self.write_config(free_port(socket.SOCK_STREAM))
+        service = self.start(Service(PROGRAM, self.config, self.folder))
+        service.wait_ready()
+        status = service.wait_for_notice(lambda notice: notice.startswith("STATUS="), "with the status")
+        self.assertIn("PLC down", status)
+        service.err.find(lambda line: "127.0.0.1:" in line and "PLC" in line, "about the PLC")
+        service.signal(signal.SIGTERM)
+        self.assertEqual(service.wait(), 0)
+
+    def test_feeds_the_watchdog_while_all_is_well(self):
+        self.write_config(free_port(socket.SOCK_STREAM))
+        service = self.start(Service(PROGRAM, self.config, self.folder, watchdog_usec=1000000))
+        service.wait_ready()
+        for _ in range(3):
+            service.wait_for_notice(lambda notice: notice == "WATCHDOG=1", "WATCHDOG=1")
+
+    def test_reload_takes_a_good_configuration_and_the_heartbeat_goes_on(self):
+        plc, service = self.start_all()
+        self.write_config(plc.port, "\n[health]\nrecover_frames = 3\n")
+        service.signal(signal.SIGHUP)
+        service.wait_for_notice(lambda notice: "RELOADING=1" in notice, "RELOADING=1")
+        service.wait_ready()
+        service.err.find(lambda line: "new configuration is in force" in line, "about the reload")
+        plc.wait_for(lambda record: not healthy(record), "with health 0 after the reload")
+        plc.wait_for(healthy, "with health 1 after the reload")
+        self.assert_unbroken_heartbeat(plc)
+
+    def test_reload_refuses_a_bad_configuration_and_the_old_one_stays(self):
+        plc, service = self.start_all()
+        good = self.config.read_text(encoding="utf-8")
+        number_of_lines = len(good.splitlines())
+        for bad, complaint in ((good + "nonsense = 1\n", f"hulltrackd.toml:{number_of_lines + 1}: "),
+                               (good.replace("room.pcd", "absent.pcd"), "absent.pcd"),
+                               (good.replace("[plc]", "[plc"), "hulltrackd.toml:2: ")):
+            with self.subTest(complaint):
+                self.config.write_text(bad, encoding="utf-8")
+                service.signal(signal.SIGHUP)
+                service.err.find(lambda line, what=complaint: what in line, f"with {complaint}")
+                service.err.find(lambda line: "the old configuration stays in force" in line and "refused" in line,
+                                 "about the refusal")
+                plc.wait_for(healthy, "with health 1")
+        self.assertNotIn(0, [record["health"] for record in self.after_first_health(plc)])
+        self.assert_unbroken_heartbeat(plc)
+
+    def test_reload_to_a_port_in_use_goes_back_to_the_old_one(self):
+        plc, service = self.start_all()
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind(("127.0.0.1", 0))
+            text = self.config.read_text(encoding="utf-8")
+            self.config.write_text(text.replace(str(self.lidar_port), str(taken.getsockname()[1])),
+                                   encoding="utf-8")
+            service.signal(signal.SIGHUP)
+            service.err.find(lambda line: "in use" in line and "old configuration stays" in line, "about the port")
+            plc.wait_for(healthy, "with health 1 from the old configuration")
+
+    def test_port_in_use_is_one_line_and_exit_1(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind(("127.0.0.1", 0))
+            self.lidar_port = taken.getsockname()[1]
+            self.write_config(free_port(socket.SOCK_STREAM))
+            done = self.run_to_end()
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn(str(self.lidar_port), done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_errors_of_configuration_and_map_exit_78_with_file_and_line(self):
+        self.write_config(502, "\n[tracking]\nvoxel_sise = 0.5\n")
+        lines = len(self.config.read_text(encoding="utf-8").splitlines())
+        for arguments in ((), ("--check-config",), ("--print-config",)):
+            with self.subTest(arguments):
+                done = self.run_to_end(*arguments)
+                self.assertEqual(done.returncode, 78)
+                self.assertIn(f"{self.config}:{lines}: ", done.stderr)
+                self.assertIn("voxel_size", done.stderr, "the nearest key is named")
+        self.write_config(502)
+        self.assertEqual(self.run_to_end("--check-config").returncode, 0)
+        (self.folder / "room.pcd").unlink()
+        for arguments in ((), ("--check-config",)):
+            with self.subTest(arguments):
+                done = self.run_to_end(*arguments)
+                self.assertEqual(done.returncode, 78)
+                self.assertIn("room.pcd", done.stderr)
+
+    def test_printed_configuration_reads_back_equal(self):
+        self.write_config(502)
+        printed = self.run_to_end("--print-config")
+        self.assertEqual(printed.returncode, 0, printed.stderr)
+        self.config.write_text(printed.stdout, encoding="utf-8")
+        self.assertEqual(self.run_to_end("--print-config").stdout, printed.stdout)
+
+    def test_wrong_command_line_exits_2(self):
+        done = self.run_to_end("--no-such-option")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--help", done.stderr)
+        for option in ("--help", "--version"):
+            self.assertEqual(self.run_to_end(option).returncode, 0)
+
+    @staticmethod
+    def after_first_health(plc):
+        records = plc.writes()
+        first = next(i for i, record in enumerate(records) if healthy(record))
+        return records[first:]
+
+    def assert_unbroken_heartbeat(self, plc):
+        beats = [int(record["heartbeat"]) for record in plc.writes()]
+        self.assertEqual(beats, [(beats[0] + i) % 65536 for i in range(len(beats))])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,182 @@
+// The service's threads against a PLC and a LiDAR on loopback, in this process.
+#include "daemon/app/session.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/integration/service/loader_bench.hpp"
+#include "tests/support/free_port.hpp"
+#include "tests/support/recording_log.hpp"
+
+namespace hulltrack {
+namespace {
+
+bool healthy(const WriteBlock& block) { return block.health; }
+
+class SessionTest : public testing::Test {
+ protected:
+  static void fail(const std::string& thread, const std::string& what) {
+    ADD_FAILURE() << thread << ": " << what;
+  }
+
+  void TearDown() override {
+    session.reset();
+    if (HasFailure()) {
+      for (const RecordingLog::Line& line : log.lines) {
+        std::printf("log: %s\n", line.text.c_str());
+      }
+    }
+  }
+
+  void start(std::uint16_t heartbeat = 0) {
+    session = std::make_unique<Session>(room_service(lidar_port, plc_port), log, fail, heartbeat);
+  }
+  std::optional<WriteBlock> wait_for(const std::function<bool(const WriteBlock&)>& law) {
+    return plc->wait_for(law);
+  }
+  std::optional<WriteBlock> wait_for_fault(Faults bit) {
+    return wait_for([bit](const WriteBlock& block) { return (block.faults & bit) != 0; });
+  }
+
+  RecordingLog log;
+  std::uint16_t lidar_port = free_port(SOCK_DGRAM);
+  RoomLidar lidar{lidar_port};
+  std::unique_ptr<CyclingPlc> plc = std::make_unique<CyclingPlc>();
+  std::uint16_t plc_port = plc->server().port();
+  std::unique_ptr<Session> session;
+};
+
+TEST_F(SessionTest, TracksARoomAndLeavesHealthZeroAndStateStopped) {
+  start();
+  const auto block = wait_for(healthy);
+  ASSERT_TRUE(block);
+  EXPECT_EQ(block->state, State::tracking);
+  EXPECT_NEAR(block->x_m, 0.0, 0.05);
+  EXPECT_NEAR(block->y_m, 0.0, 0.05);
+  EXPECT_NEAR(block->z_m, 0.0, 0.05);
+  EXPECT_GT(block->matched, 200U);
+  session->end(Session::Ending::for_good);
+  const WriteBlock last = plc->blocks().back();
+  EXPECT_FALSE(last.health);
+  EXPECT_EQ(last.state, State::stopped);
+  EXPECT_GE(log.count("state tracking"), 1U);
+  EXPECT_EQ(log.count("state stopped"), 1U);
+}
+
+TEST_F(SessionTest, HeartbeatGrowsByOneAtEveryWriteAlsoAcrossAReload) {
+  start(65530);
+  ASSERT_TRUE(wait_for(healthy));
+  const std::uint16_t last = session->end(Session::Ending::for_reload);
+  session.reset();
+  start(last);
+  ASSERT_TRUE(wait_for(healthy));
+  session->end(Session::Ending::for_good);
+  const auto blocks = plc->blocks();
+  EXPECT_EQ(blocks.front().heartbeat, 65531);
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    ASSERT_EQ(blocks[i].heartbeat, static_cast<std::uint16_t>(blocks[i - 1].heartbeat + 1));
+    ASSERT_EQ(blocks[i].heartbeat, blocks[i].heartbeat_copy);
+    ASSERT_EQ(blocks[i].health, blocks[i].state == State::tracking);
+    ASSERT_EQ(blocks[i].state == State::stopped, i + 1 == blocks.size());
+  }
+}
+
+TEST_F(SessionTest, ASilentLidarTakesTheHealthAndGivesItBack) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  lidar.mute(true);
+  const auto silent = wait_for_fault(fault::lidar_silent);
+  ASSERT_TRUE(silent);
+  EXPECT_FALSE(silent->health);
+  EXPECT_EQ(silent->state, State::fault);
+  lidar.mute(false);
+  EXPECT_TRUE(wait_for(healthy));
+  session.reset();
+  EXPECT_GE(log.count("no usable packet"), 1U);
+  EXPECT_GE(log.count("packets again"), 1U);
+}
+
+TEST_F(SessionTest, AForeignSenderIsNamedAndChangesNothing) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  RoomLidar foreign(lidar_port);
+  foreign.send_from(INADDR_LOOPBACK + 1);
+  ASSERT_TRUE(wait_for_fault(fault::foreign_packets));
+  const auto block = wait_for(healthy);
+  ASSERT_TRUE(block);
+  EXPECT_NEAR(block->x_m, 0.0, 0.05);
+  session.reset();
+  EXPECT_GE(log.count("127.0.0.2:"), 1U);
+}
+
+TEST_F(SessionTest, StartsWithoutAPlcAndServesItOnceItIsThere) {
+  plc.reset();
+  start();
+  plc = std::make_unique<CyclingPlc>(plc_port);
+  EXPECT_TRUE(wait_for(healthy));
+}
+
+TEST_F(SessionTest, ALostLinkIsToldAndMended) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  plc->server().set_fault(sim::PlcFault::reset, 1);
+  ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+  EXPECT_TRUE(wait_for(healthy));
+  plc->server().set_fault(sim::PlcFault::late_reply, 1);
+  ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+  EXPECT_TRUE(wait_for(healthy));
+}
+
+TEST_F(SessionTest, AFrozenPlcHeartbeatIsStaleData) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  plc->server().set_fault(sim::PlcFault::frozen_heartbeat);
+  const auto stale = wait_for_fault(fault::plc_stale);
+  ASSERT_TRUE(stale);
+  EXPECT_FALSE(stale->health);
+  EXPECT_EQ(stale->state, State::fault);
+  plc->server().set_fault(sim::PlcFault::none);
+  EXPECT_TRUE(wait_for(healthy));
+}
+
+TEST_F(SessionTest, AnImpossibleJointValueIsRefused) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  plc->server().set_fault(sim::PlcFault::out_of_range);
+  ASSERT_TRUE(wait_for_fault(fault::plc_value));
+  EXPECT_TRUE(wait_for([](const WriteBlock& block) { return !block.health; }));
+  plc->server().set_fault(sim::PlcFault::none);
+  EXPECT_TRUE(wait_for(healthy));
+}
+
+TEST_F(SessionTest, ObeysTheCommandWordAndEchoesIt) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  plc->server().set_command(kCommandHold);
+  const auto held = wait_for([](const WriteBlock& block) { return block.state == State::held; });
+  ASSERT_TRUE(held);
+  EXPECT_FALSE(held->health);
+  EXPECT_EQ(held->command_echo, kCommandHold);
+  plc->server().set_command(0);
+  ASSERT_TRUE(wait_for(healthy));
+  plc->server().set_command(kCommandReacquire);
+  const auto acquiring = wait_for([](const WriteBlock& block) { return block.state == State::acquiring; });
+  ASSERT_TRUE(acquiring);
+  EXPECT_EQ(acquiring->command_echo, kCommandReacquire);
+  EXPECT_TRUE(wait_for(healthy));
+}
+
+TEST_F(SessionTest, APortInUseIsOneClearLine) {
+  start();
+  try {
+    Session second(room_service(lidar_port, plc_port), log, fail, 0);
+    FAIL() << "two services on one port";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(std::to_string(lidar_port)));
+  }
+}
+
+}  // namespace
+}  // namespace hulltrack
