@@ -16,6 +16,8 @@ std::string program_name(const CLI::App& app) {
 }
 
 void add_subcommands(CLI::App& app) {
+  add_decode(app);
+  add_models(app);
   add_simulate(app);
   app.require_subcommand(1);
 }

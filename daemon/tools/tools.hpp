@@ -27,6 +27,8 @@ class ToolError : public std::runtime_error {
   int exit_code_;
 };
 
+void add_decode(CLI::App& app);
+void add_models(CLI::App& app);
 void add_simulate(CLI::App& app);
 
 }  // namespace hulltrack
