@@ -24,25 +24,28 @@ void TrackThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
     pulse_.beat(steady_now());
     if (const Scan* scan = exchange_.scans.take()) {
-      await_joints(*scan, stop);
-      process(*scan);
+      const JointHistory::Lookup lookup = await_joints(*scan, stop);
+      // The scan under way when the PLC first answered is no fault: the service is still starting.
+      if (sequence_ > 0 || lookup != JointHistory::Lookup::before_oldest) {
+        process(*scan);
+      }
     } else {
       exchange_.track_bell.wait_until(steady_now() + kLongestWait);
     }
   }
 }
 
-void TrackThread::await_joints(const Scan& scan, const std::stop_token& stop) {
+JointHistory::Lookup TrackThread::await_joints(const Scan& scan, const std::stop_token& stop) {
   const SteadyTime deadline = live_steady_time(scan.last_firing) + kJointPatience;
-  while (!stop.stop_requested()) {
+  for (;;) {
     const SteadyTime now = steady_now();
     pulse_.beat(now);
     exchange_.joints.drain_into(joints_);
     const JointHistory::Lookup lookup = joints_.covers(scan.first_firing, scan.last_firing);
     const bool may_come =
         lookup == JointHistory::Lookup::after_newest || lookup == JointHistory::Lookup::empty;
-    if (!may_come || now >= deadline || exchange_.scans.has_fresh()) {
-      return;
+    if (!may_come || now >= deadline || exchange_.scans.has_fresh() || stop.stop_requested()) {
+      return lookup;
     }
     exchange_.track_bell.wait_until(std::min(deadline, now + kLongestWait));
   }

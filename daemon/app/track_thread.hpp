@@ -22,7 +22,8 @@ class TrackThread {
   void run(std::stop_token stop);
 
  private:
-  void await_joints(const Scan& scan, const std::stop_token& stop);
+  /// Gives what the joint history says of the scan in the end.
+  JointHistory::Lookup await_joints(const Scan& scan, const std::stop_token& stop);
   void process(const Scan& scan);
   [[nodiscard]] FrameInputs inputs();
 

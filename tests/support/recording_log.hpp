@@ -2,7 +2,9 @@
 #pragma once
 
 #include <mutex>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/log.hpp"
@@ -18,7 +20,16 @@ class RecordingLog final : public LogSink {
 
   void write(LogLevel level, std::string_view line) override {
     const std::lock_guard lock(mutex_);
+    if (std::exchange(fail_next_, false)) {
+      throw std::runtime_error("the log failed");
+    }
     lines.push_back({level, std::string(line)});
+  }
+
+  /// The next line throws: an exception in the middle of whoever logs.
+  void fail_next() {
+    const std::lock_guard lock(mutex_);
+    fail_next_ = true;
   }
 
   /// The newest line, or "".
@@ -41,6 +52,7 @@ class RecordingLog final : public LogSink {
 
  private:
   mutable std::mutex mutex_;
+  bool fail_next_ = false;
 };
 
 }  // namespace hulltrack

@@ -1,9 +1,12 @@
-// `udp_replay CAPTURE FROM_PORT TO_PORT START_NS LOG`: sends the datagrams of a capture to 127.0.0.1 in
-// real time, the first one at CLOCK_MONOTONIC = START_NS. LOG gets `capture_ns,sent_ns` a datagram: when it
-// was captured, and when it really left, on the same clock as START_NS.
+// `udp_replay CAPTURE FROM_PORT TO_PORT LOG`: sends the datagrams of a capture to 127.0.0.1 in real time.
+// Prints `first T`, the capture's stamp of the first one, and sends that at CLOCK_MONOTONIC = NS once
+// standard input says `start NS`. LOG gets `capture_ns,sent_ns` a datagram: when it was captured (UTC), and
+// when it really left (CLOCK_MONOTONIC).
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
+#include <string>
 #include <thread>
 
 #include "lidar_drivers/pcap_source.hpp"
@@ -14,15 +17,25 @@ namespace {
 
 std::chrono::nanoseconds now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
-int replay(PcapSource& source, std::uint16_t to_port, std::chrono::nanoseconds start, std::FILE* log) {
+/// Waits for "start NS" on standard input.
+std::chrono::nanoseconds read_start() {
+  std::string word;
+  std::int64_t ns = 0;
+  std::cin >> word >> ns;
+  return std::chrono::nanoseconds(ns);
+}
+
+int replay(PcapSource& source, std::uint16_t to_port, std::FILE* log) {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in to = loopback_address(to_port);
-  std::optional<MeasurementTime> first;
   Datagram datagram;
   Result<bool> more = source.next(datagram);
+  const MeasurementTime first = datagram.received;
+  std::printf("first %lld\n", static_cast<long long>(to_ns(first)));
+  std::fflush(stdout);
+  const std::chrono::nanoseconds start = read_start();
   for (; more && *more; more = source.next(datagram)) {
-    first = first.value_or(datagram.received);
-    const std::chrono::nanoseconds due = start + (datagram.received - *first);
+    const std::chrono::nanoseconds due = start + (datagram.received - first);
     std::this_thread::sleep_until(std::chrono::steady_clock::time_point(due));
     static_cast<void>(
         sendto(fd, datagram.bytes.data(), datagram.bytes.size(), 0, as_sockaddr(&to), sizeof to));
@@ -38,19 +51,18 @@ int replay(PcapSource& source, std::uint16_t to_port, std::chrono::nanoseconds s
 
 int main(int argc, char** argv) {
   using namespace hulltrack;
-  if (argc != 6) {
-    std::fprintf(stderr, "usage: udp_replay CAPTURE FROM_PORT TO_PORT START_NS LOG\n");
+  if (argc != 5) {
+    std::fprintf(stderr, "usage: udp_replay CAPTURE FROM_PORT TO_PORT LOG\n");
     return 2;
   }
   auto source = PcapSource::open(argv[1], {static_cast<std::uint16_t>(std::atoi(argv[2])), std::nullopt});
-  std::FILE* log = std::fopen(argv[5], "w");
+  std::FILE* log = std::fopen(argv[4], "w");
   if (!source || log == nullptr) {
     std::fprintf(stderr, "udp_replay: %s\n",
                  source ? "cannot write the log" : source.error().message.c_str());
     return 1;
   }
-  const int code = replay(*source, static_cast<std::uint16_t>(std::atoi(argv[3])),
-                          std::chrono::nanoseconds(std::atoll(argv[4])), log);
+  const int code = replay(*source, static_cast<std::uint16_t>(std::atoi(argv[3])), log);
   std::fclose(log);
   return code;
 }

@@ -40,6 +40,17 @@ class SessionTest : public testing::Test {
     return wait_for([bit](const WriteBlock& block) { return (block.faults & bit) != 0; });
   }
 
+  /// Waits until `count` more writes have failed.
+  bool wait_for_failed_writes(std::uint64_t count) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    std::uint64_t failed = 0;
+    while (failed < count && std::chrono::steady_clock::now() < deadline) {
+      failed += session->take_figures().writes_failed;
+      std::this_thread::yield();
+    }
+    return failed >= count;
+  }
+
   RecordingLog log;
   std::uint16_t lidar_port = free_port(SOCK_DGRAM);
   RoomLidar lidar{lidar_port};
@@ -126,6 +137,35 @@ TEST_F(SessionTest, ALostLinkIsToldAndMended) {
   EXPECT_TRUE(wait_for(healthy));
   plc->server().set_fault(sim::PlcFault::late_reply, 1);
   ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+  EXPECT_TRUE(wait_for(healthy));
+}
+
+TEST_F(SessionTest, APlcThatFallsSilentIsServedAgainWhenItSpeaks) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  for (const sim::PlcFault fault :
+       {sim::PlcFault::silent, sim::PlcFault::black_hole, sim::PlcFault::pool_full}) {
+    plc->server().set_fault(fault);
+    ASSERT_TRUE(wait_for_failed_writes(3));
+    plc->server().set_fault(sim::PlcFault::none);
+    ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+    ASSERT_TRUE(wait_for(healthy));
+  }
+  EXPECT_EQ(plc->server().most_connections(), 1) << "never more than one socket";
+}
+
+TEST_F(SessionTest, AFloodFromTheRightAddressKeepsTheRhythm) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  {
+    std::vector<std::unique_ptr<RoomLidar>> flood;
+    for (int copy = 0; copy < 5; ++copy) {
+      flood.push_back(std::make_unique<RoomLidar>(lidar_port));
+    }
+    for (int frame = 0; frame < 10; ++frame) {
+      ASSERT_TRUE(wait_for([](const WriteBlock& block) { return block.matched > 0; }));
+    }
+  }
   EXPECT_TRUE(wait_for(healthy));
 }
 

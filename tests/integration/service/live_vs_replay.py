@@ -1,0 +1,157 @@
+"""The live service gives the poses of `hulltrack replay`: the same recording through registers and files.
+
+A recording of the simulator is sent over loopback in real time: its datagrams by udp_replay, its joints by a
+PLC that is not libmodbus, to hulltrackd as a process. The poses in the registers must equal those of
+`hulltrack replay`, frame by frame. Timing is reported, not judged: frames whose packets this machine sent
+late have other joints than the recording, so they are left out, and a machine too busy to send enough of
+them in time skips the test (77).
+"""
+import argparse
+import csv
+import pathlib
+import re
+import socket
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "support"))
+from service_process import PATIENCE_S, Plc, Process, Service, free_port  # noqa: E402
+
+FRAME_NS = 100_000_000
+LATE_NS = 2_000_000  # a frame with a packet sent later than this is not compared
+ENOUGH_FRAMES = 20
+POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+# Joints move at up to some deg/s on a boom of 35 m; stamps of polls and packets on a loopback interface are
+# good to a fraction of a millisecond, and what is left is a fraction of a millimetre a stamp.
+LIMIT_M = 0.010
+LIMIT_DEG = 0.03
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hulltrack", required=True)
+    parser.add_argument("--hulltrackd", required=True)
+    parser.add_argument("--udp-replay", required=True)
+    parser.add_argument("--lidar", default="velodyne_vlp16")
+    parser.add_argument("--frames", type=int, default=150)
+    parser.add_argument("--seed", type=int, default=1)
+    return parser.parse_args()
+
+
+def replayed_poses(hulltrack, recording):
+    table = recording / "replay.csv"
+    subprocess.run([hulltrack, "replay", recording, "--config", recording / "hulltrackd.toml", "--csv", table],
+                   check=True, capture_output=True)
+    with open(table, newline="", encoding="ascii") as file:
+        return {int(row["frame"]): row for row in csv.DictReader(file)}
+
+
+def live_config(recording, plc_port, lidar_port):
+    text = (recording / "hulltrackd.toml").read_text(encoding="utf-8")
+    text = re.sub(r"port = 1502", f"port = {plc_port}", text)
+    text = re.sub(r"port = 2368", f'port = {lidar_port}\nbind = "127.0.0.1"', text)
+    path = recording / "live.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def run_live(args, recording):
+    """The PLC's log of writes and the sender's log of (capture_ns, sent_ns)."""
+    lidar_port = free_port(socket.SOCK_DGRAM)
+    sent_log = recording / "sent.csv"
+    sender = Process([args.udp_replay, recording / "lidar.pcap", 2368, lidar_port, sent_log])
+    first_ns = int(sender.out.find(lambda line: line.startswith("first "), "with the first stamp").split()[1])
+    plc = Plc("--joints-csv", recording / "plc.csv", "--epoch-ns", str(first_ns), "--cycle-ms", "0")
+    service = Service(args.hulltrackd, live_config(recording, plc.port, lidar_port), recording)
+    try:
+        service.wait_ready()
+        start_ns = time.monotonic_ns() + 500_000_000
+        plc.say(f"start {start_ns}")
+        sender.say(f"start {start_ns}")
+        sender.child.wait(PATIENCE_S + args.frames * FRAME_NS * 1e-9)
+        service.signal(signal.SIGTERM)
+        assert service.wait() == 0, service.err.all
+        writes = plc.writes()
+        log = service.err.all
+    finally:
+        for process in (service, sender, plc):
+            process.close()
+    sent = [tuple(map(int, line.split(","))) for line in sent_log.read_text(encoding="ascii").splitlines()]
+    return writes, sent, log
+
+
+def frames_of(sent):
+    """Per frame number: the worst lateness of its packets, and when the packet that completed it left."""
+    first_capture, first_sent = sent[0]
+    late, completed = {}, {}
+    for capture, left in sent:
+        number = (capture - first_capture) // FRAME_NS
+        late[number] = max(late.get(number, 0), (left - first_sent) - (capture - first_capture))
+        if number > 0:
+            completed.setdefault(number - 1, left)
+    return late, completed
+
+
+def compare(writes, replayed, late):
+    """Differences (m, deg) of the frames published with health 1 that were sent in time."""
+    metres, degrees = [], []
+    published = {int(write["frame"]): write for write in writes if write["health"] == 1}
+    for number, write in published.items():
+        row = replayed.get(number)
+        around = [late.get(number + step, 0) for step in (-1, 0, 1)]
+        if row is None or not row["x"] or max(around) > LATE_NS:
+            continue
+        differences = [abs(write[key] - float(row[key])) for key in POSE]
+        metres.append(max(differences[:3]))
+        degrees.append(max(differences[3:]))
+    return published, metres, degrees
+
+
+def report_timing(writes, completed):
+    first_write = {}
+    for write in writes:
+        if write["health"] == 1:
+            first_write.setdefault(int(write["frame"]), write)
+    latencies = [(write["mono_ns"] - completed[number]) * 1e-6
+                 for number, write in first_write.items() if number in completed]
+    gaps = [(b["mono_ns"] - a["mono_ns"]) * 1e-6 for a, b in zip(writes, writes[1:])]
+    print(f"last packet sent to registers written: median {statistics.median(latencies):.1f} ms, "
+          f"worst {max(latencies):.1f} ms over {len(latencies)} frames")
+    print(f"gap between writes: median {statistics.median(gaps):.1f} ms, worst {max(gaps):.1f} ms")
+
+
+def main():
+    args = arguments()
+    with tempfile.TemporaryDirectory() as folder:
+        recording = pathlib.Path(folder) / "recording"
+        subprocess.run([args.hulltrack, "simulate", "--scenario", "berth", "--frames", str(args.frames), "--seed",
+                        str(args.seed), "--lidar", args.lidar, "--out", recording], check=True,
+                       capture_output=True)
+        replayed = replayed_poses(args.hulltrack, recording)
+        writes, sent, log = run_live(args, recording)
+    late, completed = frames_of(sent)
+    published, metres, degrees = compare(writes, replayed, late)
+    healthy = [number for number, row in replayed.items() if row["health"] == "1"]
+    print(f"{len(replayed)} frames; health 1 in {len(healthy)} of replay and {len(published)} of live; "
+          f"{len(metres)} sent in time and compared")
+    last = writes[-1]
+    assert (last["health"], last["state"]) == (0, 7), last
+    if len(metres) < ENOUGH_FRAMES:
+        print("\n".join(log))
+        in_time = sum(1 for value in late.values() if value <= LATE_NS)
+        assert in_time < 3 * ENOUGH_FRAMES or len(healthy) < 3 * ENOUGH_FRAMES, "the live service was seldom healthy"
+        print("too few frames were sent in time to compare: skipped")
+        return 77
+    report_timing(writes, completed)
+    print(f"live against replay: {1e3 * statistics.median(metres):.2f} mm in the median, {1e3 * max(metres):.2f} mm "
+          f"at most; {max(degrees):.4f} deg at most")
+    assert max(metres) <= LIMIT_M and max(degrees) <= LIMIT_DEG, "live and replay differ"
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,102 @@
+// The plc thread alone, with a tracker that this test plays: what the registers say must not depend on it.
+#include "daemon/app/plc_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include "daemon/app/guarded_thread.hpp"
+#include "daemon/app/live_time.hpp"
+#include "tests/integration/service/loader_bench.hpp"
+#include "tests/support/recording_log.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr std::chrono::milliseconds kMaxAge{2000};
+
+class PlcThreadTest : public testing::Test {
+ protected:
+  static FrameDone healthy_frame(std::uint64_t sequence) {
+    FrameDone frame;
+    frame.sequence = sequence;
+    frame.last_received = frame.done = steady_now();
+    frame.result.frame = static_cast<std::uint32_t>(sequence);
+    frame.result.time = live_measurement_time(frame.done);
+    frame.result.registered = frame.result.converged = frame.result.health = true;
+    frame.result.displacement = {0.1, 0.2, 0.3};
+    frame.result.state = State::tracking;
+    return frame;
+  }
+  /// A pose stays young for longer than a busy machine may take to write it.
+  static Config patient(Config config) {
+    config.tracker.health.max_age = kMaxAge;
+    return config;
+  }
+  void deliver(const FrameDone& frame) {
+    exchange.frame.put(frame);
+    exchange.plc_bell.ring();
+  }
+
+  RecordingLog log;
+  CyclingPlc plc;
+  Config config = patient(room_service(1, plc.server().port()).config);
+  Exchange exchange;
+  Pulse pulse{"plc", std::chrono::seconds(1), steady_now()};
+  PlcThread thread{config, exchange, pulse, log, 0};
+};
+
+class RunningPlcThreadTest : public PlcThreadTest {
+ protected:
+  GuardedThread runner{"plc", [this](std::stop_token stop) { thread.run(stop); },
+                       [](const std::string&, const std::string& what) { ADD_FAILURE() << what; },
+                       [this] { exchange.plc_bell.ring(); }};
+};
+
+TEST_F(RunningPlcThreadTest, AStuckTrackerCanNeverLookHealthy) {
+  deliver(healthy_frame(1));
+  const auto healthy = plc.wait_for([](const WriteBlock& block) { return block.health; });
+  ASSERT_TRUE(healthy);
+  EXPECT_NEAR(healthy->x_m, 0.1, 1e-6);
+  // No further frame: the age grows at every write until the health falls by itself.
+  const auto expired = plc.wait_for([](const WriteBlock& block) { return !block.health; });
+  ASSERT_TRUE(expired);
+  EXPECT_GT(expired->age_ms, static_cast<double>(kMaxAge.count()));
+  EXPECT_NEAR(expired->x_m, 0.1, 1e-6) << "the last good pose stays";
+  for (const WriteBlock& block : plc.blocks()) {
+    ASSERT_TRUE(!block.health || block.age_ms <= static_cast<double>(kMaxAge.count()));
+  }
+}
+
+TEST_F(RunningPlcThreadTest, AnRxThreadThatStoppedLookingCountsAsSilence) {
+  deliver(healthy_frame(1));
+  ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.health; }));
+  exchange.lidars.put({.standing = 0, .every_silent = false, .updated = steady_now()});
+  EXPECT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.state == State::fault; }));
+}
+
+TEST_F(RunningPlcThreadTest, EventsStandInTheRegisters) {
+  deliver(healthy_frame(1));
+  exchange.events.raise(fault::frame_dropped | fault::foreign_packets);
+  EXPECT_TRUE(plc.wait_for([](const WriteBlock& block) {
+    return (block.faults & fault::frame_dropped) != 0 && (block.faults & fault::foreign_packets) != 0;
+  }));
+}
+
+TEST_F(PlcThreadTest, AnEscapingExceptionLeavesHealthZeroAndStateStopped) {
+  deliver(healthy_frame(1));
+  std::string what;
+  {
+    GuardedThread runner(
+        "plc", [this](std::stop_token stop) { thread.run(stop); },
+        [&](const std::string&, const std::string& message) { what = message; },
+        [this] { exchange.plc_bell.ring(); });
+    ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.health; }));
+    log.fail_next();
+    plc.server().set_fault(sim::PlcFault::out_of_range);  // something to log
+    ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.state == State::stopped; }));
+  }
+  EXPECT_EQ(what, "the log failed");
+  EXPECT_FALSE(plc.blocks().back().health);
+}
+
+}  // namespace
+}  // namespace hulltrack
