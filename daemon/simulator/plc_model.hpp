@@ -34,6 +34,11 @@ class PlcModel {
 
   [[nodiscard]] PlcPresented at(double t) const;
 
+  /// When cycle `number` begins; may be negative. Its values are presented from then on.
+  [[nodiscard]] double cycle_begin(std::int64_t number) const {
+    return static_cast<double>(number) * kCycle - phase_;
+  }
+
  private:
   const LoaderMotion* loader_;
   EncoderConfig encoders_;

@@ -90,27 +90,27 @@ Point ray_within_beam(const SensorTraits& sensor, const Point& direction, Random
   return (direction + a * across + e * along).normalized();
 }
 
-sim::VelodyneReturn measure(const SensorTraits& sensor, const std::optional<RayHit>& middle,
+sim::VelodyneReturn measure(const SensorTraits& sensor, const RayHit& middle,
                             const std::optional<RayHit>& other, RandomStream& random) {
   constexpr double kPulseLength = 0.9;  // m of range within which two echoes merge (6 ns)
   constexpr double kSpeckle = 0.25;     // sigma of the received power's logarithm
   constexpr double kDarkReflectivity = 0.10;
-  // How much of the pulse falls on the surface of the middle ray: at an edge any share.
+  // How much of the pulse falls on the surface of the middle ray: at an edge any larger share.
   const double share = random.uniform(0.3, 1.0);
   const double speckle = std::exp(kSpeckle * random.gaussian());
   const double noise = sensor.range_sigma * random.gaussian();
 
-  const double near_power = middle ? share * received_power(*middle) : 0.0;
-  const double far_power = other ? (1.0 - share) * received_power(*other) : 0.0;
-  const double power = (near_power + far_power) * speckle;
+  const double middle_power = share * received_power(middle);
+  const double other_power = other ? (1.0 - share) * received_power(*other) : 0.0;
+  const double power = (middle_power + other_power) * speckle;
   const double faintest = kDarkReflectivity / (sensor.range_of_dark * sensor.range_of_dark);
   if (power < faintest) return {};
 
-  const double near_range = middle ? static_cast<double>(middle->distance) : 0.0;
-  const double far_range = other ? static_cast<double>(other->distance) : 0.0;
-  double range = near_power >= far_power ? near_range : far_range;
-  if (middle && other && std::abs(near_range - far_range) < kPulseLength)
-    range = (near_power * near_range + far_power * far_range) / (near_power + far_power);
+  const auto middle_range = static_cast<double>(middle.distance);
+  const double other_range = other ? static_cast<double>(other->distance) : middle_range;
+  double range = middle_power >= other_power ? middle_range : other_range;
+  if (std::abs(middle_range - other_range) < kPulseLength)
+    range = (middle_power * middle_range + other_power * other_range) / (middle_power + other_power);
   range += noise;
   if (range < sensor.min_range) return {};
   const double brightness = std::clamp(100.0 * power * range * range, 1.0, 100.0);

@@ -41,8 +41,9 @@ struct SensorTraits {
 /// A direction within the beam around `direction` (unit), drawn evenly over its cross-section.
 [[nodiscard]] Point ray_within_beam(const SensorTraits& sensor, const Point& direction, RandomStream& random);
 
-/// What the receiver reports of a beam whose two rays met these surfaces (or none).
-[[nodiscard]] sim::VelodyneReturn measure(const SensorTraits& sensor, const std::optional<RayHit>& middle,
+/// What the receiver reports of a beam whose middle and whose other ray met these surfaces. (A beam whose
+/// middle meets nothing returns nothing.)
+[[nodiscard]] sim::VelodyneReturn measure(const SensorTraits& sensor, const RayHit& middle,
                                           const std::optional<RayHit>& other, RandomStream& random);
 
 }  // namespace hulltrack

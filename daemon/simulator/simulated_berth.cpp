@@ -94,8 +94,12 @@ std::vector<sim::VelodyneReturn> SimulatedBerth::returns(std::uint64_t number) c
     const double t = to_seconds(firing.time);
     const auto reach = static_cast<float>(sensor_->max_range);
     const auto middle = world_->cast(sweep, t, origin, direction, reach);
+    if (!middle) {
+      returns.push_back({});
+      continue;
+    }
     const auto other = world_->cast(sweep, t, origin, ray_within_beam(*sensor_, direction, random), reach);
-    returns.push_back(measure(*sensor_, middle, other, random));
+    returns.push_back(measure(*sensor_, *middle, other, random));
   }
   return returns;
 }
@@ -107,6 +111,10 @@ SimulatedBerth::Packet SimulatedBerth::packet(std::uint64_t number) const {
 HullPose SimulatedBerth::truth(Nanoseconds time) const { return hull_.pose(to_seconds(time)); }
 Pose SimulatedBerth::T_W_H(Nanoseconds time) const { return hull_.T_W_H(to_seconds(time)); }
 Joints SimulatedBerth::true_joints(Nanoseconds time) const { return loader_.at(to_seconds(time)); }
+Nanoseconds SimulatedBerth::plc_cycle(std::int64_t number) const {
+  // A microsecond into the cycle: rounding must not fall back into the one before.
+  return nanoseconds_from_ms(plc_.cycle_begin(number) * 1e3) + std::chrono::microseconds(1);
+}
 PlcPresented SimulatedBerth::plc(Nanoseconds time) const { return plc_.at(to_seconds(time)); }
 
 TriangleMesh SimulatedBerth::map_mesh_H() const {

@@ -60,6 +60,8 @@ class SimulatedBerth {
   [[nodiscard]] Pose T_W_H(Nanoseconds time) const;
   [[nodiscard]] Joints true_joints(Nanoseconds time) const;
   [[nodiscard]] PlcPresented plc(Nanoseconds time) const;
+  /// When the PLC's cycle `number` begins, and its values change.
+  [[nodiscard]] Nanoseconds plc_cycle(std::int64_t number) const;
   [[nodiscard]] const BerthWorld& world() const { return *world_; }
 
   /// The ship of the map in H, empty; and the ship that really lies there, with its cargo.

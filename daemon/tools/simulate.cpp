@@ -1,13 +1,17 @@
 // `hulltrack simulate`: a virtual berth with ground truth, as a recording folder or live on the network.
+#include <charconv>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "daemon/simulator/live_run.hpp"
 #include "daemon/simulator/recording.hpp"
 #include "daemon/simulator/simulated_berth.hpp"
+#include "daemon/simulator/site_config.hpp"
 #include "daemon/tools/tools.hpp"
 
 namespace hulltrack {
@@ -15,9 +19,15 @@ namespace {
 
 struct SimulateOptions {
   SimulationOptions simulation;
+  double seconds = 0.0;
   bool list = false;
   bool overwrite = false;
-  std::string out;
+  std::string out;         // recording folder; empty = live
+  std::string config_out;  // folder for the live service's map and configuration
+  std::string lidar_to = "127.0.0.1:2368";
+  std::string joints;  // d_x,slew,luff of a parked loader
+  bool no_plc = false;
+  LiveOptions live;
 };
 
 volatile std::sig_atomic_t g_interrupted = 0;
@@ -81,36 +91,127 @@ void record(const SimulatedBerth& berth, const SimulateOptions& options) {
                options.out.c_str(), berth.frames(), options.out.c_str(), options.out.c_str());
 }
 
-void run(const SimulateOptions& options) {
+/// "HOST:PORT".
+void parse_lidar_target(const std::string& text, LiveOptions& live) {
+  const auto colon = text.rfind(':');
+  unsigned port = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = colon == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
+                                                 : std::from_chars(text.data() + colon + 1, end, port);
+  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port > 65535)
+    throw ToolError(kExitUsage, "--lidar-to " + text + ": give ADDRESS:PORT, 127.0.0.1:2368 for example");
+  live.lidar_host = text.substr(0, colon);
+  live.lidar_port = static_cast<std::uint16_t>(port);
+}
+
+/// "D_X,SLEW,LUFF" in m and deg.
+Joints parse_joints(const std::string& text) {
+  double d_x = 0.0;
+  double slew = 0.0;
+  double luff = 0.0;
+  int read = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &d_x, &slew, &luff, &read) != 3 ||
+      text.size() != static_cast<std::size_t>(read) || !std::isfinite(d_x + slew + luff))
+    throw ToolError(kExitUsage,
+                    "--joints " + text + ": give travel in m, slew and luff in deg, 3.5,90,1 for example");
+  return {d_x, radians(slew), radians(luff)};
+}
+
+void write_config(const SimulatedBerth& berth, const SimulateOptions& options) {
+  const SiteAddresses addresses{
+      .plc_host = "127.0.0.1", .plc_port = options.live.plc_port, .lidar_port = options.live.lidar_port};
+  std::fprintf(stderr, "surveying the ship for %s/hull.pcd\n", options.config_out.c_str());
+  if (auto done =
+          write_site_files(berth, options.config_out, options.overwrite, site_config(berth, addresses));
+      !done)
+    throw ToolError(done.error().message);
+  std::fprintf(stderr, "start the service: hulltrackd --stderr --config %s/hulltrackd.toml\n",
+               options.config_out.c_str());
+}
+
+void run_on_network(const SimulatedBerth& berth, const SimulateOptions& options) {
+  watch_for_interrupts();
+  if (!options.config_out.empty()) write_config(berth, options);
+  const LiveHooks hooks{.show =
+                            [](const std::string& line) {
+                              std::puts(line.c_str());
+                              std::fflush(stdout);
+                            },
+                        .keep_going = [] { return g_interrupted == 0; }};
+  if (auto done = run_live(berth, options.live, hooks); !done) throw ToolError(done.error().message);
+}
+
+void run(SimulateOptions options) {
   if (options.list) return list_scenarios();
+  constexpr double kFrameRate = 10.0;
+  if (options.seconds > 0.0)
+    options.simulation.frames = static_cast<int>(std::lround(options.seconds * kFrameRate));
+  if (!options.joints.empty()) options.simulation.parked = parse_joints(options.joints);
+  parse_lidar_target(options.lidar_to, options.live);
+  options.live.with_plc = !options.no_plc;
   const auto berth = SimulatedBerth::create(options.simulation);
   if (!berth) throw ToolError(kExitUsage, berth.error().message);
-  record(**berth, options);
+  if (options.out.empty())
+    run_on_network(**berth, options);
+  else
+    record(**berth, options);
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app) {
   auto options = std::make_shared<SimulateOptions>();
+  SimulationOptions& simulation = options->simulation;
+  LiveOptions& live = options->live;
   CLI::App* command = app.add_subcommand(
-      "simulate", "A virtual ship, quay and loader: LiDAR datagrams and PLC values with ground truth.");
-  command->footer("Example: hulltrack simulate --scenario berth --frames 869 --seed 7 --out REC");
+      "simulate",
+      "A virtual ship, quay and loader: LiDAR datagrams and PLC values with ground truth.\n"
+      "With --out a recording folder, without it live on the network in real time.");
+  command->footer(
+      "Examples:\n"
+      "  hulltrack simulate --scenario berth --seed 7 --out REC     a recording with ground truth\n"
+      "  hulltrack simulate --scenario berth --config-out SITE      live; then: hulltrackd --config "
+      "SITE/hulltrackd.toml\n"
+      "  hulltrack simulate --no-plc --joints 3.5,90,1              only the LiDAR; your PLC presents these "
+      "joints");
   command->add_flag("--list", options->list, "Name the scenarios and exit");
-  command->add_option("--scenario", options->simulation.scenario, "What the ship does, see --list")
+  command->add_option("--scenario", simulation.scenario, "What the ship does, see --list")
       ->capture_default_str();
+  command->add_option("--lidar", simulation.lidar_model, "velodyne_vlp16 or velodyne_vlp32c")
+      ->capture_default_str();
+  auto* frames = command
+                     ->add_option("--frames", simulation.frames,
+                                  "Length of the run at 10 Hz (default: the scenario's own)")
+                     ->check(CLI::Range(1, SimulatedBerth::kMaxFrames));
+  command->add_option("--seconds", options->seconds, "The same in seconds")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->excludes(frames);
+  command->add_option("--seed", simulation.seed, "The same seed gives the same bytes")->capture_default_str();
+  command->add_option("--joints", options->joints, "D_X,SLEW,LUFF in m and deg: the loader is parked there");
+  command->add_flag("--force", options->overwrite, "Replace what is in the folder of --out or --config-out");
+
+  auto* out = command->add_option("--out", options->out,
+                                  "Folder for lidar.pcap, plc.csv, truth.csv, hull.pcd, hulltrackd.toml");
   command
-      ->add_option("--lidar", options->simulation.lidar_model,
-                   "LiDAR model: velodyne_vlp16 or velodyne_vlp32c")
-      ->capture_default_str();
-  command
-      ->add_option("--frames", options->simulation.frames,
-                   "Length of the run at 10 Hz (default: the scenario's own)")
-      ->check(CLI::Range(1, SimulatedBerth::kMaxFrames));
-  command->add_option("--seed", options->simulation.seed, "The same seed gives the same bytes")
-      ->capture_default_str();
-  command->add_option("--out", options->out,
-                      "Write a recording folder: lidar.pcap, plc.csv, truth.csv, hull.pcd, hulltrackd.toml");
-  command->add_flag("--force", options->overwrite, "Replace what is in the folder");
+      ->add_option("--config-out", options->config_out,
+                   "Live: folder for the map and a matching hulltrackd.toml")
+      ->excludes(out);
+  command->add_option("--lidar-to", options->lidar_to, "Live: ADDRESS:PORT that the datagrams go to")
+      ->capture_default_str()
+      ->excludes(out);
+  auto* port = command->add_option("--plc-port", live.plc_port, "Live: Modbus/TCP port of the loader's PLC")
+                   ->capture_default_str()
+                   ->excludes(out);
+  command->add_option("--plc-bind", live.plc_bind, "Live: address that the PLC listens on")
+      ->capture_default_str()
+      ->excludes(out);
+  auto* wait =
+      command->add_flag("--wait", live.wait_for_service, "Live: begin when the service first reads the PLC")
+          ->excludes(out);
+  command->add_flag("--no-plc", options->no_plc, "Live: no PLC, somebody else's serves the service")
+      ->excludes(out)
+      ->excludes(port)
+      ->excludes(wait);
   command->callback([options] { run(*options); });
 }
 

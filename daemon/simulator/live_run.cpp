@@ -1,0 +1,117 @@
+#include "daemon/simulator/live_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "daemon/simulator/live_judge.hpp"
+#include "daemon/simulator/packets_ahead.hpp"
+#include "daemon/simulator/udp_sender.hpp"
+#include "plc/sim/plc_server.hpp"
+
+namespace hulltrack {
+namespace {
+
+SteadyTime now() { return std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()); }
+
+/// The PLC of the simulation: serves what the encoders say, judges what the service writes.
+class LivePlc {
+ public:
+  LivePlc(const SimulatedBerth& berth, const LiveOptions& options)
+      : berth_(berth),
+        judge_(berth),
+        server_({.bind = options.plc_bind, .port = options.plc_port, .read = {}, .write = {}}) {
+    present(Nanoseconds{0});
+  }
+
+  [[nodiscard]] std::uint16_t port() const { return server_.port(); }
+  [[nodiscard]] bool read_by_service() const { return server_.requests() > 0; }
+
+  /// Simulation time 0 is at `start`.
+  void start(SteadyTime start) {
+    server_.on_write([this, start](const sim::PlcWriteRecord& record) {
+      const std::scoped_lock lock(mutex_);
+      judge_.add(record.block, record.at - start);
+    });
+    cycles_ = std::jthread([this, start](const std::stop_token& stop) {
+      for (std::int64_t cycle = 0; !stop.stop_requested(); ++cycle) {
+        std::this_thread::sleep_until(start + berth_.plc_cycle(cycle));
+        present(berth_.plc_cycle(cycle));
+      }
+    });
+  }
+
+  [[nodiscard]] std::string line(Nanoseconds time) const {
+    const std::scoped_lock lock(mutex_);
+    return judge_.line(time);
+  }
+  [[nodiscard]] std::vector<std::string> summary(Nanoseconds end) const {
+    const std::scoped_lock lock(mutex_);
+    return judge_.summary(end);
+  }
+
+ private:
+  void present(Nanoseconds time) {
+    const Joints joints = berth_.plc(time).joints;
+    server_.set_joints(joints.d_x, degrees(joints.theta_r), degrees(joints.theta_p));
+  }
+
+  const SimulatedBerth& berth_;
+  mutable std::mutex mutex_;
+  LiveJudge judge_;
+  sim::PlcServer server_;
+  std::jthread cycles_;
+};
+
+void wait_for_service(const LivePlc& plc, const LiveHooks& hooks) {
+  constexpr auto kLook = std::chrono::milliseconds(50);
+  while (!plc.read_by_service() && hooks.keep_going()) std::this_thread::sleep_for(kLook);
+}
+
+}  // namespace
+
+Result<void> run_live(const SimulatedBerth& berth, const LiveOptions& options, const LiveHooks& hooks) {
+  auto lidar = UdpSender::create(options.lidar_host, options.lidar_port);
+  if (!lidar) return lidar.error();
+  std::unique_ptr<LivePlc> plc;
+  try {
+    if (options.with_plc) plc = std::make_unique<LivePlc>(berth, options);
+  } catch (const std::runtime_error& failure) {
+    return Error{std::string(failure.what()) + "; choose another port with --plc-port"};
+  }
+  PacketsAhead packets(berth);
+  packets.wait_ready(PacketsAhead::kReady);
+  if (plc) hooks.show("the PLC listens on port " + std::to_string(plc->port()));
+  if (plc && options.wait_for_service) wait_for_service(*plc, hooks);
+
+  const SteadyTime start = now();
+  if (plc) plc->start(start);
+  Nanoseconds latest{0};
+  Nanoseconds next_line = std::chrono::seconds(1);
+  const LiveJudge nobody(berth);
+  const auto show = [&](Nanoseconds time) { hooks.show(plc ? plc->line(time) : nobody.ship_line(time)); };
+  std::uint64_t number = 0;
+  for (auto packet = packets.take(); packet; packet = packets.take(), ++number) {
+    const Nanoseconds due = berth.sent(number);
+    std::this_thread::sleep_until(start + due);
+    latest = std::max(latest, now() - start - due);
+    if (auto sent = lidar->send(*packet); !sent) return sent;
+    if (due < next_line) continue;
+    show(next_line);
+    if (!hooks.keep_going()) break;
+    next_line += std::chrono::seconds(1);
+  }
+  const Nanoseconds end = now() - start;
+  if (plc)
+    for (const std::string& line : plc->summary(end)) hooks.show(line);
+  if (latest > std::chrono::milliseconds(20))
+    hooks.show("this host was too busy: datagrams left up to " +
+               std::to_string(latest / std::chrono::milliseconds(1)) +
+               " ms late, so the figures above are too bad");
+  return {};
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,138 @@
+#include "daemon/simulator/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "core/io/map_file.hpp"
+#include "daemon/config/read_config.hpp"
+#include "daemon/simulator/site_config.hpp"
+#include "lidar_drivers/model_registry.hpp"
+#include "lidar_drivers/pcap_source.hpp"
+#include "lidar_drivers/scan_builder.hpp"
+
+namespace hulltrack {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kFiles[] = {"lidar.pcap", "plc.csv", "truth.csv", "hull.pcd", "hulltrackd.toml"};
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const LidarModel& model : lidar_models()) names.emplace_back(model.name);
+  return names;
+}
+
+/// A folder of its own, gone afterwards.
+class Recording : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "hulltrack-recording-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::unique_ptr<SimulatedBerth> berth(std::uint64_t seed, int frames) {
+    return std::move(SimulatedBerth::create({.seed = seed, .frames = frames})).value();
+  }
+  static std::string bytes(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  static bool on(double) { return true; }
+
+  fs::path folder_;
+};
+
+TEST_F(Recording, SameSeedSameBytesAndItsReplayHasItsFrames) {
+  constexpr int kFrames = 6;
+  const fs::path one = folder_ / "one";
+  const fs::path two = folder_ / "two";
+  ASSERT_TRUE(write_recording(*berth(21, kFrames), one, false, on).ok());
+  ASSERT_TRUE(write_recording(*berth(21, kFrames), two, false, on).ok());
+  for (const char* name : kFiles) {
+    EXPECT_FALSE(bytes(one / name).empty()) << name;
+    EXPECT_TRUE(bytes(one / name) == bytes(two / name)) << name << " differs";
+  }
+
+  const ConfigReading reading = read_config(one / "hulltrackd.toml", model_names());
+  ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
+  const Config& config = *reading.config;
+  EXPECT_TRUE(read_hull_map(config.map_file).ok());
+  ASSERT_TRUE(read_plc_csv(one / "plc.csv").ok());
+
+  auto source = PcapSource::open(one / "lidar.pcap");
+  ASSERT_TRUE(source.ok()) << source.error().message;
+  auto builder = ScanBuilder::create(config.lidars, config.framing);
+  ASSERT_TRUE(builder.ok());
+  std::vector<std::uint32_t> frames;
+  Scan scan;
+  const auto collect = [&] {
+    while (builder->take(scan)) frames.push_back(scan.frame_number);
+  };
+  Datagram datagram;
+  for (auto more = source->next(datagram); more.ok() && *more; more = source->next(datagram)) {
+    builder->add(0, datagram);
+    collect();
+  }
+  builder->finish();
+  collect();
+  EXPECT_EQ(frames, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST_F(Recording, ConfigurationSaysWhatTheSimulationIs) {
+  for (const SensorTraits& sensor : simulated_sensors()) {
+    const auto simulated =
+        std::move(SimulatedBerth::create({.lidar_model = std::string(sensor.model), .frames = 1})).value();
+    const std::string text =
+        site_config(*simulated, {.plc_host = "127.0.0.1", .plc_port = 1234, .lidar_port = 2999});
+    const ConfigReading reading = parse_config(text, folder_ / "hulltrackd.toml", model_names());
+    ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
+    const Config& config = *reading.config;
+    EXPECT_EQ(config.plc.port, 1234);
+    EXPECT_NEAR(to_seconds(config.plc.latency), PlcModel::kMeanLatency, 1e-9);
+    ASSERT_EQ(config.lidars.size(), 1U);
+    EXPECT_EQ(config.lidars[0].port, 2999);
+    EXPECT_TRUE(config.lidars[0].mount.isApprox(sensor.mount, 1e-9));
+    EXPECT_EQ(config.lidars[0].exclude, simulated->lidar_config().exclude);
+    EXPECT_TRUE(
+        config.tracker.hull.reference_point.isApprox(simulated->hull_config().reference_point, 1e-12));
+    EXPECT_EQ(config.tracker.registration.method, RegistrationConfig{}.method);
+  }
+}
+
+TEST_F(Recording, TruthRowsHoldEveryFrameMiddle) {
+  const auto simulated = berth(3, 20);
+  const std::vector<TruthRow> rows = recorded_truth(*simulated);
+  for (int frame = 0; frame < 20; ++frame) {
+    const Nanoseconds middle = frame * SimulatedBerth::kFramePeriod + SimulatedBerth::kFramePeriod / 2;
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const TruthRow& r) {
+      return r.t_ns == to_ns(SimulatedBerth::kEpoch + middle);
+    });
+    ASSERT_NE(row, rows.end());
+    EXPECT_EQ(row->xyz, simulated->truth(middle).displacement);
+  }
+}
+
+TEST_F(Recording, InterruptedRunLeavesNothing) {
+  const fs::path out = folder_ / "out";
+  const auto done = write_recording(*berth(1, 60), out, false, [](double share) { return share < 0.1; });
+  EXPECT_FALSE(done.ok());
+  EXPECT_TRUE(fs::is_empty(out));
+}
+
+TEST_F(Recording, AFolderThatHoldsSomethingIsKept) {
+  std::ofstream(folder_ / "precious.txt") << "keep";
+  const auto done = write_recording(*berth(1, 1), folder_, false, on);
+  ASSERT_FALSE(done.ok());
+  EXPECT_NE(done.error().message.find("--force"), std::string::npos);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+}  // namespace
+}  // namespace hulltrack
