@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 namespace hulltrack {
@@ -15,20 +14,24 @@ constexpr std::size_t kFirstTableSize = 1024;
 constexpr float kReach = 1048576.0F;  // voxels from the origin along each axis: 21 bits with the sign
 constexpr int kAxisBits = 21;
 
+// Whole part of a coordinate in voxels, rounded down and counted from the far corner of the reach.
+std::uint64_t cell_of(float coordinate) {
+  const auto towards_zero = static_cast<std::int32_t>(coordinate);
+  const std::int32_t down = towards_zero - (static_cast<float>(towards_zero) > coordinate ? 1 : 0);
+  return static_cast<std::uint64_t>(down + static_cast<std::int32_t>(kReach));
+}
+
 // The voxel's three coordinates side by side in 63 bits; kEmptyKey for a point that has no voxel.
 std::uint64_t key_of(const Point& p, float inverse_size) {
-  const float x = std::floor(p.x() * inverse_size);
-  const float y = std::floor(p.y() * inverse_size);
-  const float z = std::floor(p.z() * inverse_size);
+  const float x = p.x() * inverse_size;
+  const float y = p.y() * inverse_size;
+  const float z = p.z() * inverse_size;
   // Written such that a NaN fails.
   const bool inside = x >= -kReach && x < kReach && y >= -kReach && y < kReach && z >= -kReach && z < kReach;
   if (!inside) {
     return kEmptyKey;
   }
-  const auto unsigned_cell = [](float v) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(v + kReach));
-  };
-  return (unsigned_cell(x) << (2 * kAxisBits)) | (unsigned_cell(y) << kAxisBits) | unsigned_cell(z);
+  return (cell_of(x) << (2 * kAxisBits)) | (cell_of(y) << kAxisBits) | cell_of(z);
 }
 
 std::size_t hash(std::uint64_t key) {

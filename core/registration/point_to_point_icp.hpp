@@ -66,7 +66,6 @@ class PointToPointIcp {
   /// centroid, so that "1 mm" speaks of the hull: the translation column of dT is that of the
   /// world's origin, where 0.01 deg and a 100 m lever arm already make 17 mm.
   [[nodiscard]] IcpResult align(std::span<const Point> source, const KdTree& target, const Pose& T_init);
-  [[nodiscard]] std::size_t searches() const { return correspondences_.searches(); }
 
  private:
   IcpConfig config_;

@@ -242,6 +242,9 @@ struct NeighbourhoodCollector {
     if (count > kFew) {
       keep_few(layout);
     }
+    for (std::size_t i = 0; i < kLeafSize; i += kCacheLine / sizeof(std::uint32_t)) {
+      __builtin_prefetch(&layout.index[first_slot(leaf) + i]);  // finish() will want it
+    }
     alignas(32) float squared[kLeafSize];
     distances.store_to(squared);
     for (std::uint32_t mask = distances.within(limit); mask != 0; mask &= mask - 1) {

@@ -167,7 +167,7 @@ SceneScan scan_from(const Boxes& hull, Boxes clutter, const Point& sensor, std::
   for (std::size_t i = 0; i < kAzimuths; ++i) {
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       const double azimuth = radians(360.0 * static_cast<double>(i) / kAzimuths);
-      const double elevation = radians(-89.0 + 45.0 * static_cast<double>(channel) / kChannels);
+      const double elevation = radians(-89.0 + 39.0 * static_cast<double>(channel) / kChannels);
       const Point direction = Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
                                               std::cos(elevation) * std::sin(azimuth), std::sin(elevation))
                                   .cast<float>();
