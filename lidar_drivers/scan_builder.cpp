@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "lidar_drivers/datagram_router.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {
@@ -45,7 +46,8 @@ Result<ScanBuilder> ScanBuilder::create(const std::vector<LidarConfig>& lidars,
     auto decoder = model->make_decoder(options, config.calibration);
     if (!decoder) return Error{"lidar \"" + config.name + "\": " + decoder.error().message};
     const Nanoseconds wrap = decoder.value()->clock_wrap();
-    built.push_back({config, std::move(decoder).value(), PacketSequence(wrap), {}, {}, {}, 0.0, {}, {}});
+    Lidar lidar{.config = config, .decoder = std::move(decoder).value(), .sequence = PacketSequence(wrap)};
+    built.push_back(std::move(lidar));
   }
   return ScanBuilder(std::move(built), framing);
 }
@@ -61,6 +63,8 @@ DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
     ++lidar.status.packets_rejected;
     ++frames_.counters(index).packets_rejected;
     lidar.last_rejection = outcome;
+    lidar.rejected_ip = datagram.source_ip;
+    lidar.rejected_port = datagram.source_port;
     return outcome;
   }
   const PacketSequence::Step step = lidar.sequence.note(datagram.bytes, packet_, datagram.received);
@@ -177,7 +181,10 @@ LidarStatus ScanBuilder::status(std::size_t index) const {
   assert(index < lidars_.size());
   const Lidar& lidar = lidars_[index];
   LidarStatus status = lidar.status;
-  if (status.packets_rejected > 0) status.last_rejection = lidar.decoder->explain(lidar.last_rejection);
+  if (status.packets_rejected > 0) {
+    status.last_rejection = lidar.decoder->explain(lidar.last_rejection) + " from " +
+                            format_ipv4(lidar.rejected_ip) + ":" + std::to_string(lidar.rejected_port);
+  }
   return status;
 }
 

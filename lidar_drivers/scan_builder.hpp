@@ -44,7 +44,7 @@ struct LidarStatus {
   MeasurementTime last_received{};  // of a decoded datagram; meaningless while packets == 0
   bool clock_fault = false;         // time_source sensor: sensor and host disagree, host time is used
   Nanoseconds clock_offset{};       // sensor minus host time modulo the sensor's wrap, time_source sensor
-  std::string last_rejection;       // names expected and seen; empty while packets_rejected == 0
+  std::string last_rejection;       // expected, seen and sender; empty while packets_rejected == 0
 };
 
 class ScanBuilder {
@@ -63,7 +63,8 @@ class ScanBuilder {
   /// Counts of the receiver since the last call, for the counters of the frame that is being filled.
   void add_receive_counts(std::size_t lidar, std::uint32_t foreign, std::uint32_t kernel_overflows);
 
-  /// Finishes frames whose time is over although nothing more arrived. `now` on the clock of the stamps.
+  /// Finishes frames that ended more than 20 ms before `now` although nothing more arrived. `now` is on the
+  /// clock of the stamps: live, read it before draining the sources, or what still waits there comes late.
   void advance(MeasurementTime now);
 
   /// The recording is at its end: finishes what is open.
@@ -90,12 +91,14 @@ class ScanBuilder {
     LidarConfig config;
     std::unique_ptr<Decoder> decoder;
     PacketSequence sequence;
-    LidarStatus status;
-    DecodeOutcome last_rejection;
+    LidarStatus status{};
+    DecodeOutcome last_rejection{};
+    std::uint32_t rejected_ip = 0;
+    std::uint16_t rejected_port = 0;
     MeasurementTime newest{};  // last firing of the newest datagram
     double newest_azimuth = 0.0;
-    std::optional<MeasurementTime> last_crossing;
-    RateWindow window;
+    std::optional<MeasurementTime> last_crossing{};
+    RateWindow window{};
   };
 
   ScanBuilder(std::vector<Lidar> lidars, const FramingConfig& framing);

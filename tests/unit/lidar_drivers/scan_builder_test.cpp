@@ -354,7 +354,7 @@ TEST(ScanBuilder, AnotherModelIsRefusedByName) {
   EXPECT_EQ(builder.status(0).packets, 0U);
   EXPECT_EQ(builder.status(0).packets_rejected, 10U);
   EXPECT_EQ(builder.status(0).last_rejection,
-            "expected VLP-16 (product code 0x22), saw VLP-32C (product code 0x28)");
+            "expected VLP-16 (product code 0x22), saw VLP-32C (product code 0x28) from 0.0.0.0:0");
 }
 
 TEST(ScanBuilder, AChangeOfReturnModeIsCountedAndDecoded) {
