@@ -1,6 +1,6 @@
 // Which story does a simulation tell? Named scenarios: what the ship does, which ship it is, how long.
 //
-// Magnitudes and their sources: hulltrack(1), "Scenarios of simulate". Plain data, no failure.
+// Magnitudes and their sources: hulltrack(1), section SIMULATE. Plain data, no failure.
 #pragma once
 
 #include <string_view>
