@@ -6,12 +6,19 @@
 namespace hulltrack {
 
 std::string format_text(const char* format, ...) {
-  char buffer[241];
   std::va_list arguments;
   va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  std::va_list again;
+  va_copy(again, arguments);
+  const int size = std::vsnprintf(nullptr, 0, format, arguments);
   va_end(arguments);
-  return buffer;
+  std::string line;
+  if (size > 0) {
+    line.resize(static_cast<std::size_t>(size));
+    std::vsnprintf(line.data(), line.size() + 1, format, again);
+  }
+  va_end(again);
+  return line;
 }
 
 }  // namespace hulltrack

@@ -1,6 +1,6 @@
-// printf-style text as a string: for reasons and messages with figures.
+// printf-style text as a string: for reasons, messages and log lines with figures.
 //
-// One line, at most 240 characters (longer text is cut). Any thread.
+// As long as it needs to be; empty for a format that the C library rejects. Any thread.
 #pragma once
 
 #include <string>

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/text.hpp"
 #include "daemon/app/live_time.hpp"
-#include "daemon/app/text.hpp"
 
 namespace hulltrack {
 namespace {
@@ -46,13 +46,14 @@ void LidarWatch::update_silence(const LidarEvidence& evidence, SteadyTime now) {
   silence_log_.update(
       silent_, now,
       [&] {
-        return text(
+        return format_text(
             "%s: no usable packet on UDP port %u for %.1f s, so no new pose. Check its power, its cable, "
             "that it sends to this computer and that a firewall lets it through",
             name_.c_str(), config_.port, to_seconds(now - heard));
       },
       [&](Nanoseconds lasted) {
-        return text("%s: packets again after %.1f s", name_.c_str(), to_seconds(lasted + config_.timeout));
+        return format_text("%s: packets again after %.1f s", name_.c_str(),
+                           to_seconds(lasted + config_.timeout));
       });
 }
 
@@ -60,7 +61,7 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
   foreign_log_.update(
       foreign_grows_.update(evidence.foreign, now), now,
       [&] {
-        return text(
+        return format_text(
             "%s: dropped datagrams from %s, which is not the configured source %s; %llu so far. Poses are "
             "not affected; find out who sends to UDP port %u",
             name_.c_str(), evidence.last_foreign.c_str(), config_.source.c_str(),
@@ -70,7 +71,7 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
   rejected_log_.update(
       rejected_grows_.update(evidence.status.packets_rejected, now), now,
       [&] {
-        return text(
+        return format_text(
             "%s: dropped datagrams that are not those of a %s: %s; %llu so far. Compare `model` and "
             "`port` in the configuration with the sensor",
             name_.c_str(), config_.model.c_str(), evidence.status.last_rejection.c_str(),
@@ -80,7 +81,7 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
   overflow_log_.update(
       overflow_grows_.update(evidence.kernel_overflows, now), now,
       [&] {
-        return text(
+        return format_text(
             "%s: the kernel's receive buffer overflowed, %llu packets lost so far. Is this computer "
             "overloaded? See net.core.rmem_max in hulltrackd(8)",
             name_.c_str(), static_cast<unsigned long long>(evidence.kernel_overflows));
@@ -93,7 +94,7 @@ void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
   loss_log_.update(
       !silent_ && status.loss > kWorthyLoss, now,
       [&] {
-        return text(
+        return format_text(
             "%s: %.1f %% of its packets get lost on the way. Check cable, switch and this computer's load",
             name_.c_str(), 100.0 * status.loss);
       },
@@ -102,14 +103,15 @@ void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
   rate_log_.update(
       turning && std::abs(status.rpm - expected_rpm_) > kRateTolerance * expected_rpm_, now,
       [&] {
-        return text("%s: turns at %.0f rpm where frame_rate_hz asks for %.0f, so a frame is not one turn",
-                    name_.c_str(), status.rpm, expected_rpm_);
+        return format_text(
+            "%s: turns at %.0f rpm where frame_rate_hz asks for %.0f, so a frame is not one turn",
+            name_.c_str(), status.rpm, expected_rpm_);
       },
-      [&](Nanoseconds) { return text("%s: turns at %.0f rpm again", name_.c_str(), status.rpm); });
+      [&](Nanoseconds) { return format_text("%s: turns at %.0f rpm again", name_.c_str(), status.rpm); });
   clock_log_.update(
       status.clock_fault, now,
       [&] {
-        return text(
+        return format_text(
             "%s: its clock is off by %.3f s; the time of reception is used instead. Check its time "
             "synchronisation",
             name_.c_str(), to_seconds(status.clock_offset));

@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/kinematics/joint_history.hpp"
-#include "daemon/app/text.hpp"
 
 namespace hulltrack {
 namespace {
@@ -38,13 +38,13 @@ void PlcWatch::update_link(LinkOutcome outcome, const std::string& message, Stea
   link_log_.update(
       !link_up_ && link_was_lost_, now,
       [&] {
-        return text(
+        return format_text(
             "%s: %s. It gets no pose meanwhile and must stop trusting the last one by its own timer; "
             "trying again by itself. Check the PLC, the cable and IPAddressAllow= of the unit",
             name_.c_str(), link_message_.c_str());
       },
       [&](Nanoseconds lasted) {
-        return text("%s: connected again after %.1f s", name_.c_str(), to_seconds(lasted));
+        return format_text("%s: connected again after %.1f s", name_.c_str(), to_seconds(lasted));
       });
 }
 
@@ -54,8 +54,8 @@ void PlcWatch::polled(const PlcPoll& poll, SteadyTime now) {
     read_log_.update(
         poll.outcome == LinkOutcome::exception, now,
         [&] {
-          return text("%s refuses to be read, so no scan has joints: %s", name_.c_str(),
-                      poll.message.c_str());
+          return format_text("%s refuses to be read, so no scan has joints: %s", name_.c_str(),
+                             poll.message.c_str());
         },
         [&](Nanoseconds) { return name_ + ": can be read again"; });
   }
@@ -69,11 +69,11 @@ void PlcWatch::judged(const JointGate::Outcome& outcome, SteadyTime now) {
   value_log_.update(
       value_fault_ != 0, now,
       [&] {
-        return text("%s: joint value refused, scans are not registered with it: %s", name_.c_str(),
-                    outcome.reason.c_str());
+        return format_text("%s: joint value refused, scans are not registered with it: %s", name_.c_str(),
+                           outcome.reason.c_str());
       },
       [&](Nanoseconds lasted) {
-        return text("%s: joint values are good again after %.1f s", name_.c_str(), to_seconds(lasted));
+        return format_text("%s: joint values are good again after %.1f s", name_.c_str(), to_seconds(lasted));
       });
 }
 
@@ -83,8 +83,8 @@ void PlcWatch::wrote(const PlcWrite& write, SteadyTime now) {
     write_log_.update(
         write.outcome == LinkOutcome::exception, now,
         [&] {
-          return text("%s refuses our registers, so it sees our heartbeat stop: %s", name_.c_str(),
-                      write.message.c_str());
+          return format_text("%s refuses our registers, so it sees our heartbeat stop: %s", name_.c_str(),
+                             write.message.c_str());
         },
         [&](Nanoseconds) { return name_ + ": takes our registers again"; });
   }
@@ -103,9 +103,10 @@ Faults PlcWatch::standing(SteadyTime now) {
   stale_log_.update(
       stale, now,
       [&] {
-        return text("%s: no new joint values for %.1f s, so no new pose; %s", name_.c_str(),
-                    to_seconds(now - last_news_),
-                    link_up_ ? "its heartbeat does not move: is its program running?" : "the link is down");
+        return format_text(
+            "%s: no new joint values for %.1f s, so no new pose; %s", name_.c_str(),
+            to_seconds(now - last_news_),
+            link_up_ ? "its heartbeat does not move: is its program running?" : "the link is down");
       },
       [&](Nanoseconds) { return name_ + ": new joint values again"; });
   return static_cast<Faults>(value_fault_ | (stale ? fault::plc_stale : 0));

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/base/text.hpp"
 #include "daemon/app/live_time.hpp"
-#include "daemon/app/text.hpp"
 
 namespace hulltrack {
 namespace {
@@ -161,7 +161,7 @@ void RxThread::look_at_lidars(SteadyTime now) {
   dropped_log_.update(
       dropped_grows_.update(dropped_, now), now,
       [&] {
-        return text(
+        return format_text(
             "scans come faster than they can be processed: %llu left out so far, the newest is used. Is "
             "this computer overloaded?",
             static_cast<unsigned long long>(dropped_));

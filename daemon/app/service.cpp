@@ -5,9 +5,9 @@
 #include <exception>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "daemon/app/live_time.hpp"
 #include "daemon/app/summary.hpp"
-#include "daemon/app/text.hpp"
 
 namespace hulltrack {
 namespace {
@@ -29,10 +29,10 @@ Service::Service(std::filesystem::path config_file, Prepared prepared, Signals& 
 int Service::run() {
   start_session(prepared_);
   second_began_ = minute_began_ = steady_now();
-  log_.write(LogLevel::notice,
-             text("started: %zu LiDAR(s), map %s with %zu points, PLC %s:%u", prepared_.config.lidars.size(),
-                  prepared_.config.map_file.c_str(), prepared_.map->cloud_H().size(),
-                  prepared_.config.plc.host.c_str(), prepared_.config.plc.port));
+  log_.write(LogLevel::notice, format_text("started: %zu LiDAR(s), map %s with %zu points, PLC %s:%u",
+                                           prepared_.config.lidars.size(), prepared_.config.map_file.c_str(),
+                                           prepared_.map->cloud_H().size(), prepared_.config.plc.host.c_str(),
+                                           prepared_.config.plc.port));
   notifier_.ready();
   while (!stopping_ && !failure_.get()) {
     wait_for_signal(signals_);
@@ -113,7 +113,7 @@ void Service::swap_to(Prepared next) {
     log_.write(LogLevel::notice, "reload: the new configuration is in force; the hull is searched for again");
   } catch (const std::exception& error) {
     log_.write(LogLevel::error,
-               text("reload refused: %s. The old configuration stays in force", error.what()));
+               format_text("reload refused: %s. The old configuration stays in force", error.what()));
     start_session(prepared_);
   }
 }
@@ -126,9 +126,9 @@ void Service::supervise(SteadyTime now) {
   } else if (overdue_ != overdue->thread) {
     overdue_ = overdue->thread;
     log_.write(LogLevel::error,
-               text("thread %s has made no progress for %.1f s: the watchdog is not fed, the "
-                    "service manager will restart the service",
-                    overdue->thread.c_str(), to_seconds(overdue->silence)));
+               format_text("thread %s has made no progress for %.1f s: the watchdog is not fed, the "
+                           "service manager will restart the service",
+                           overdue->thread.c_str(), to_seconds(overdue->silence)));
   }
 }
 

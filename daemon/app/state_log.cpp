@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "daemon/app/text.hpp"
+#include "core/base/text.hpp"
 
 namespace hulltrack {
 namespace {
@@ -60,9 +60,9 @@ std::string figures(const WriteBlock& registers) {
   if (registers.state == State::starting || registers.q1_m >= kUnknownDistance) {
     return {};
   }
-  std::string line = text("Q1 %.3f m, %u points matched", registers.q1_m, registers.matched);
+  std::string line = format_text("Q1 %.3f m, %u points matched", registers.q1_m, registers.matched);
   if (registers.age_ms < kUnknownAgeMs) {
-    line += text(", pose %.0f ms old", registers.age_ms);
+    line += format_text(", pose %.0f ms old", registers.age_ms);
   }
   return line;
 }
@@ -94,12 +94,12 @@ void StateLog::update(const WriteBlock& registers, const std::string& reason, St
 }
 
 void StateLog::announce(const WriteBlock& registers, const std::string& reason, SteadyTime now) {
-  std::string line = text("state %s", state_name(registers.state));
+  std::string line = format_text("state %s", state_name(registers.state));
   if (told_) {
-    line += text(" after %.1f s of %s", to_seconds(now - told_since_), state_name(*told_));
+    line += format_text(" after %.1f s of %s", to_seconds(now - told_since_), state_name(*told_));
   }
   if (unannounced_ > 1) {
-    line += text(" and %u changes in between", unannounced_ - 1);
+    line += format_text(" and %u changes in between", unannounced_ - 1);
   }
   for (const std::string& part :
        {figures(registers), fault_words(registers.faults), registers.health ? std::string{} : reason}) {

@@ -1,6 +1,6 @@
 #include "daemon/app/summary.hpp"
 
-#include "daemon/app/text.hpp"
+#include "core/base/text.hpp"
 
 namespace hulltrack {
 namespace {
@@ -18,7 +18,7 @@ double loss_percent(const Figures& figures) {
 }
 
 std::string q1_words(const Figures& figures) {
-  return figures.q1_m.count > 0 ? text("Q1 %.3f m", figures.q1_m.mean()) : "no Q1";
+  return figures.q1_m.count > 0 ? format_text("Q1 %.3f m", figures.q1_m.mean()) : "no Q1";
 }
 
 std::string plc_words(const WriteBlock& registers, const Figures& figures) {
@@ -26,38 +26,38 @@ std::string plc_words(const WriteBlock& registers, const Figures& figures) {
     return "PLC down";
   }
   const bool stale = (registers.faults & fault::plc_stale) != 0;
-  return text("PLC %.1f ms%s", figures.round_trip_ms.mean(), stale ? " but its data stale" : "");
+  return format_text("PLC %.1f ms%s", figures.round_trip_ms.mean(), stale ? " but its data stale" : "");
 }
 
 std::string lidar_words(const WriteBlock& registers, const Figures& figures) {
   const bool silent = (registers.faults & fault::lidar_silent) != 0;
-  return text("loss %.1f %%%s", loss_percent(figures), silent ? ", LiDAR silent" : "");
+  return format_text("loss %.1f %%%s", loss_percent(figures), silent ? ", LiDAR silent" : "");
 }
 
 }  // namespace
 
 std::string status_line(const WriteBlock& registers, const Figures& figures, Nanoseconds window) {
-  return text("%s %.1f Hz, %s, %s, %s", state_name(registers.state), per_second(figures.frames, window),
-              q1_words(figures).c_str(), plc_words(registers, figures).c_str(),
-              lidar_words(registers, figures).c_str());
+  return format_text("%s %.1f Hz, %s, %s, %s", state_name(registers.state),
+                     per_second(figures.frames, window), q1_words(figures).c_str(),
+                     plc_words(registers, figures).c_str(), lidar_words(registers, figures).c_str());
 }
 
 std::string summary_line(const WriteBlock& registers, const Figures& figures, Nanoseconds window) {
-  std::string line =
-      text("last %.0f s: %s; %llu frames (%.1f Hz), health 1 in %.1f %%, %s, latency %.0f ms (worst %.0f)",
-           to_seconds(window), state_name(registers.state), static_cast<unsigned long long>(figures.frames),
-           per_second(figures.frames, window), percent(figures.healthy_frames, figures.frames),
-           q1_words(figures).c_str(), figures.latency_ms.mean(), figures.latency_ms.worst);
-  line += text(", computing %.1f ms (worst %.1f), %llu frames dropped", figures.processing_ms.mean(),
-               figures.processing_ms.worst, static_cast<unsigned long long>(figures.frames_dropped));
-  line += text(
+  std::string line = format_text(
+      "last %.0f s: %s; %llu frames (%.1f Hz), health 1 in %.1f %%, %s, latency %.0f ms (worst %.0f)",
+      to_seconds(window), state_name(registers.state), static_cast<unsigned long long>(figures.frames),
+      per_second(figures.frames, window), percent(figures.healthy_frames, figures.frames),
+      q1_words(figures).c_str(), figures.latency_ms.mean(), figures.latency_ms.worst);
+  line += format_text(", computing %.1f ms (worst %.1f), %llu frames dropped", figures.processing_ms.mean(),
+                      figures.processing_ms.worst, static_cast<unsigned long long>(figures.frames_dropped));
+  line += format_text(
       "; %s (worst %.1f), %llu of %llu polls and %llu writes failed, longest gap between writes %.0f ms",
       plc_words(registers, figures).c_str(), figures.round_trip_ms.worst,
       static_cast<unsigned long long>(figures.polls_failed), static_cast<unsigned long long>(figures.polls),
       static_cast<unsigned long long>(figures.writes_failed), figures.write_gap_ms.worst);
-  line +=
-      text("; %llu packets, %s, %llu refused", static_cast<unsigned long long>(figures.packets),
-           lidar_words(registers, figures).c_str(), static_cast<unsigned long long>(figures.packets_refused));
+  line += format_text("; %llu packets, %s, %llu refused", static_cast<unsigned long long>(figures.packets),
+                      lidar_words(registers, figures).c_str(),
+                      static_cast<unsigned long long>(figures.packets_refused));
   return line;
 }
 
