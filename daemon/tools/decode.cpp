@@ -227,7 +227,8 @@ void decode(const DecodeOptions& options) {
   if (tally.decoded > 0) print_summary(options, **decoder, tally);
   if (!more) throw ToolError(more.error().message);
   if (tally.decoded > 0) return;
-  if (std::filesystem::is_regular_file(options.out)) std::filesystem::remove(options.out);  // it holds no point
+  if (std::filesystem::is_regular_file(options.out))
+    std::filesystem::remove(options.out);  // it holds no point
   if (tally.rejected == 0) throw ToolError(capture->explain_nothing_found());
   throw ToolError(options.capture + ": none of " + std::to_string(tally.rejected) +
                   " datagrams to UDP port " + std::to_string(*filter.port) + " is of a " +
