@@ -61,9 +61,10 @@ TEST(SampleFile, ReadsWithoutAProblemAndHoldsTheDefaults) {
 TEST(SampleFile, HasEveryKey) {
   const auto reading = read_config(kSample, {"velodyne_vlp16"});
   for (const DocumentedKey& key : all_keys()) {
+    const std::string lidar = kLidarSection;
     const std::string section =
-        replaced(replaced(key.section, "lidar.mount", "lidar.0.mount"), "lidar", "lidar.0");
-    const std::string place = replaced(section, "lidar.0.0", "lidar.0") + '.' + key.name;
+        key.section.starts_with(lidar) ? lidar + ".0" + key.section.substr(lidar.size()) : key.section;
+    const std::string place = section + '.' + key.name;
     EXPECT_TRUE(reading.lines.contains(place)) << place << " is missing in " << kSample;
   }
 }

@@ -336,6 +336,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Wrong{"no_value", plc("port =\n"), ":2: TOML syntax", "expected value"},
                       Wrong{"open_text", plc("# fine\nhost2 = \"abc\n"), ":3: TOML syntax", "string"},
                       Wrong{"open_table", read("slew = { offset = 1\n"), ":2: TOML syntax", "inline table"},
+                      Wrong{"header_without_a_name", "# one\n[= 1\n" + kPlc, ":2: TOML syntax", "key"},
                       Wrong{"bad_utf8", "# \xC3\n" + kPlc, ":1: TOML syntax", "utf-8"},
                       Wrong{"beyond_64_bits", other("[health]\nmin_matched = 99999999999999999999\n"),
                             ":2: TOML syntax", "99999999999999999999"},
