@@ -25,7 +25,7 @@ inline constexpr std::size_t kMaxHeight = 7;
 inline constexpr std::size_t kCacheLine = 64;
 
 /// Searches under way at a time in a batch: enough to hide the memory's latency (measured).
-inline constexpr std::size_t kInterleaved = 8;
+inline constexpr std::size_t kInterleaved = 12;
 
 struct alignas(kCacheLine) Node {
   float min_x[kFanOut], max_x[kFanOut];
