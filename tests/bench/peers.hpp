@@ -31,8 +31,7 @@ class NanoflannTree {
   std::unique_ptr<Impl> impl_;
 };
 
-/// PCL's KdTreeFLANN. It has no bounded nearest neighbour: a radius search for one, sorted, as its own
-/// documentation proposes.
+/// PCL's KdTreeFLANN: its radius search, limited to one answer, which is the nearest.
 class PclTree {
  public:
   explicit PclTree(const Cloud& cloud);

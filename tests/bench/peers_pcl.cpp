@@ -35,9 +35,9 @@ void PclTree::nearest(std::span<const Point> queries, float radius, std::span<Ne
   std::vector<float> squared_distances(1);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const pcl::PointXYZ query(queries[i].x(), queries[i].y(), queries[i].z());
-    const bool found = impl_->tree.nearestKSearch(query, 1, indices, squared_distances) > 0 &&
-                       squared_distances[0] < radius * radius;
-    out[i] = {found ? static_cast<std::uint32_t>(indices[0]) : Neighbour::kNone, squared_distances[0]};
+    const bool found = impl_->tree.radiusSearch(query, radius, indices, squared_distances, 1) > 0;
+    out[i] = {found ? static_cast<std::uint32_t>(indices[0]) : Neighbour::kNone,
+              found ? squared_distances[0] : radius * radius};
   }
 }
 
