@@ -53,6 +53,7 @@ class HullMotion {
   [[nodiscard]] Pose T_W_H(double t) const;
   /// T_W_H of such a pose about the reference point.
   [[nodiscard]] Pose transform(const HullPose& pose) const;
+  [[nodiscard]] const HullMotionConfig& config() const { return config_; }
   [[nodiscard]] const Eigen::Vector3d& reference_point() const { return reference_point_H_; }
 
  private:

@@ -17,7 +17,7 @@ std::string text(const char* format, Values... values) {
 }  // namespace
 
 std::optional<Nanoseconds> LiveJudge::departure() const {
-  const Run& run = berth_->scenario().motion.run;
+  const Run& run = berth_->hull().config().run;
   if (run.distance <= 0.0) return std::nullopt;
   return nanoseconds_from_ms(run.start * 1e3);
 }

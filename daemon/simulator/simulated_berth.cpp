@@ -28,6 +28,14 @@ Eigen::Vector3d reference_point_H() {
   return (corner * 1000.0).array().round() / 1000.0;  // as a configuration states it
 }
 
+HullMotionConfig hull_motion(const SimulationOptions& options, const Scenario& scenario) {
+  HullMotionConfig motion = scenario.motion;
+  if (options.leave_at) {
+    motion.run.start = *options.leave_at;
+  }
+  return motion;
+}
+
 LoaderMotion loader_motion(const SimulationOptions& options, double duration) {
   return options.parked ? LoaderMotion(*options.parked)
                         : LoaderMotion(loader_limits(), duration, options.seed);
@@ -55,6 +63,9 @@ Result<std::unique_ptr<SimulatedBerth>> SimulatedBerth::create(const SimulationO
                  known_names(true)};
   if (options.frames < 0 || options.frames > kMaxFrames)
     return Error{"the number of frames must lie between 1 and " + std::to_string(kMaxFrames)};
+  if (options.leave_at && scenario->motion.run.speed == 0.0)
+    return Error{"the ship of scenario \"" + options.scenario +
+                 "\" never gets under way: leave out the time to leave"};
   RandomStream random(options.seed, 500);
   sim::VelodyneEncoderConfig config;
   config.rpm = kRpm;
@@ -73,7 +84,7 @@ SimulatedBerth::SimulatedBerth(const SimulationOptions& options, const Scenario&
       frames_(options.frames > 0 ? options.frames : scenario.frames),
       encoder_(std::move(encoder)),
       loader_(loader_motion(options, to_seconds(frames_ * kFramePeriod))),
-      hull_(scenario.motion, reference_point_H(), options.seed),
+      hull_(hull_motion(options, scenario), reference_point_H(), options.seed),
       plc_(loader_, options.encoders, options.seed),
       world_(std::make_unique<BerthWorld>(hull_mesh_H(), loader_, hull_, sensor.mount)) {
   const Nanoseconds end = frames_ * kFramePeriod;

@@ -29,6 +29,8 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   int frames = 0;                               // 0 = the scenario's own number; at most kMaxFrames
   std::optional<Joints> parked = std::nullopt;  // the loader stands here and never moves
+  std::optional<double> leave_at =
+      std::nullopt;  // s: the ship gets under way then, not when the scenario says
   EncoderConfig encoders = {};
 };
 
@@ -58,6 +60,7 @@ class SimulatedBerth {
 
   [[nodiscard]] HullPose truth(Nanoseconds time) const;
   [[nodiscard]] Pose T_W_H(Nanoseconds time) const;
+  [[nodiscard]] const HullMotion& hull() const { return hull_; }
   [[nodiscard]] Joints true_joints(Nanoseconds time) const;
   [[nodiscard]] PlcPresented plc(Nanoseconds time) const;
   /// When the PLC's cycle `number` begins, and its values change.

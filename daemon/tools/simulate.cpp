@@ -186,6 +186,10 @@ void add_simulate(CLI::App& app) {
   command->add_option("--seconds", options->seconds, "The same in seconds")
       ->check(CLI::Range(0.1, 3600.0))
       ->excludes(frames);
+  command
+      ->add_option("--leave-at", simulation.leave_at,
+                   "Seconds after which the ship gets under way (berth, shift; default: the scenario's own)")
+      ->check(CLI::Range(0.0, 3600.0));
   command->add_option("--seed", simulation.seed, "The same seed gives the same bytes")->capture_default_str();
   command->add_option("--joints", options->joints, "D_X,SLEW,LUFF in m and deg: the loader is parked there");
   command->add_flag("--force", options->overwrite, "Replace what is in the folder of --out or --config-out");

@@ -203,5 +203,17 @@ TEST(SimulatedBerth, AParkedLoaderPresentsConstants) {
   EXPECT_EQ(first.theta_r, later.theta_r);
 }
 
+TEST(SimulatedBerth, TheShipLeavesWhenTold) {
+  const auto early = make({.frames = 300, .leave_at = 10.0});
+  const auto moored = make({.frames = 300});
+  const auto apart = [&](int seconds) {
+    const Nanoseconds t = std::chrono::seconds(seconds);
+    return (early->truth(t).displacement - moored->truth(t).displacement).norm();
+  };
+  EXPECT_EQ(apart(10), 0.0);
+  EXPECT_NEAR(apart(15), 0.5 * 0.08 * 25.0, 1e-9);  // hulltrack(1): 0.08 m/s2
+  EXPECT_FALSE(SimulatedBerth::create({.scenario = "static", .leave_at = 10.0}).ok());
+}
+
 }  // namespace
 }  // namespace hulltrack
