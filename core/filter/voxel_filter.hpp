@@ -6,7 +6,7 @@
 // noise; unlike the centroid itself it was measured.
 // Voxels are cubes with corners at whole multiples of the size from the frame's origin. Any frame; m.
 // Failure: none; points that are not finite or lie more than 2^20 voxels from the origin are left out.
-// Thread rule: one owner; scratch memory is kept between calls. Cost: linear, about 20 ns a point.
+// Thread rule: one owner; scratch memory is kept between calls. Cost: linear in the points.
 #pragma once
 
 #include <cstdint>

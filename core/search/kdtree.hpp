@@ -4,7 +4,7 @@
 // of threads may query. Points are copied into the tree (leaf order, structure of arrays); indices in
 // answers are those of the cloud given to the constructor.
 // Failure: none; an empty cloud gives empty answers; points with a NaN or infinity are left out, and a
-// query with one finds nothing. Cost: 18 bytes a point; a query looks at a handful of leaves.
+// query with one finds nothing. Cost: about 17 bytes a point; a query looks at a handful of leaves.
 #pragma once
 
 #include <array>
@@ -52,7 +52,7 @@ class KdTree {
   void nearest_k(const Point& query, std::size_t k, float radius, std::vector<Neighbour>& out) const;
 
   /// As nearest() for many queries at once: out[i] answers queries[i], kNone where there is nothing.
-  /// Twice as fast, because searches wait for memory together. `out` has the size of `queries`.
+  /// Faster, because searches wait for memory together. `out` has the size of `queries`.
   void nearest(std::span<const Point> queries, float radius, std::span<Neighbour> out) const;
 
   /// For each query the points with distance < radius (m, > 0) that are not farther than the nearest one and

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Below this many points a comparison select beats filling and reading a histogram (measured).
+// Below this many points a comparison select is used: a histogram has little to count.
 constexpr std::size_t kSmallRange = 192;
 // More bins than this no longer fit the first-level cache beside the points.
 constexpr std::size_t kMaxBins = 1024;
