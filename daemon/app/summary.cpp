@@ -26,7 +26,8 @@ std::string plc_words(const WriteBlock& registers, const Figures& figures) {
     return "PLC down";
   }
   const bool stale = (registers.faults & fault::plc_stale) != 0;
-  return format_text("PLC %.1f ms%s", figures.round_trip_ms.mean(), stale ? " but its data stale" : "");
+  return format_text("PLC %.1f ms%s%s", figures.round_trip_ms.mean(), stale ? " but its data stale" : "",
+                     figures.writes_failed > 0 ? " but writes fail" : "");
 }
 
 std::string lidar_words(const WriteBlock& registers, const Figures& figures) {

@@ -45,6 +45,12 @@ TEST(Summary, StatusLineNamesWhatIsMissing) {
   EXPECT_EQ(status_line(block, {}, seconds(1)), "fault 0.0 Hz, no Q1, PLC down, loss 0.0 %, LiDAR silent");
 }
 
+TEST(Summary, StatusLineTellsThatThePlcRefusesOurRegisters) {
+  Figures figures = one_good_second();
+  figures.writes_failed = 10;
+  EXPECT_THAT(status_line(tracking(), figures, seconds(1)), HasSubstr("PLC 2.1 ms but writes fail"));
+}
+
 TEST(Summary, SixtySecondsAddUpToAMinute) {
   Figures minute;
   for (int second = 0; second < 60; ++second) {
