@@ -22,13 +22,15 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "support"))
 from service_process import PATIENCE_S, Plc, Process, Service, free_port  # noqa: E402
 
 FRAME_NS = 100_000_000
-LATE_NS = 2_000_000  # a frame with a packet sent later than this is not compared
+LATE_NS = 5_000_000  # a frame with a packet sent later than this is not compared
 ENOUGH_FRAMES = 20
 POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-# Joints move at up to some deg/s on a boom of 35 m; stamps of polls and packets on a loopback interface are
-# good to a fraction of a millisecond, and what is left is a fraction of a millimetre a stamp.
-LIMIT_M = 0.010
-LIMIT_DEG = 0.03
+# Stamps of polls and packets on a loopback interface are good to a fraction of a millisecond, in which the
+# joints move the LiDAR by a fraction of a millimetre: that is the median. Now and then such a difference
+# decides whether the registration takes one more step, and a last step may be as long as its epsilons
+# (1 mm and 0.1 deg, felt at some metres from the middle of the scan).
+MEDIAN_M, MEDIAN_DEG = 0.002, 0.01
+LIMIT_M, LIMIT_DEG = 0.010, 0.1
 
 
 def arguments():
@@ -144,12 +146,14 @@ def main():
         print("\n".join(log))
         in_time = sum(1 for value in late.values() if value <= LATE_NS)
         assert in_time < 3 * ENOUGH_FRAMES or len(healthy) < 3 * ENOUGH_FRAMES, "the live service was seldom healthy"
-        print("too few frames were sent in time to compare: skipped")
+        print(f"too few frames were sent in time to compare (lateness {statistics.median(late.values()) * 1e-6:.1f} ms "
+              "in the median): skipped")
         return 77
     report_timing(writes, completed)
     print(f"live against replay: {1e3 * statistics.median(metres):.2f} mm in the median, {1e3 * max(metres):.2f} mm "
           f"at most; {max(degrees):.4f} deg at most")
     assert max(metres) <= LIMIT_M and max(degrees) <= LIMIT_DEG, "live and replay differ"
+    assert statistics.median(metres) <= MEDIAN_M and statistics.median(degrees) <= MEDIAN_DEG, "they differ at large"
     return 0
 
 
