@@ -1,0 +1,44 @@
+// One line a frame: the per-frame CSV of `hulltrack replay` (ICD 4.2).
+//
+// m and deg; numbers with the shortest text that reads back equal, so that two runs compare byte for byte.
+// x..yaw are empty when nothing was registered, q1..rms when there are no metrics, ms without a timing.
+// Failure: a message with the file (disk full, no permission). Thread rule: one owner.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/result.hpp"
+#include "core/tracking/hull_tracker.hpp"
+
+namespace hulltrack {
+
+inline constexpr const char* kFrameCsvHeader =
+    "frame,t_ns,state,health,faults,x,y,z,roll,pitch,yaw,q1,mean,median,q3,rms,matched,sigma_t,sigma_r,"
+    "iterations,ms";
+
+/// Without a newline.
+[[nodiscard]] std::string frame_csv_line(const TrackResult& result, std::optional<double> processing_ms);
+
+class FrameCsv {
+ public:
+  /// Creates or empties the file and writes the header.
+  [[nodiscard]] static Result<FrameCsv> create(const std::filesystem::path& file);
+  [[nodiscard]] Result<void> write(const TrackResult& result, std::optional<double> processing_ms);
+  [[nodiscard]] Result<void> close();
+
+ private:
+  struct Closer {
+    void operator()(std::FILE* stream) const { std::fclose(stream); }
+  };
+  FrameCsv(std::string name, std::FILE* stream) : name_(std::move(name)), stream_(stream) {}
+  [[nodiscard]] Result<void> put(const std::string& line);
+
+  std::string name_;
+  std::unique_ptr<std::FILE, Closer> stream_;
+};
+
+}  // namespace hulltrack

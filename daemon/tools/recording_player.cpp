@@ -1,0 +1,122 @@
+#include "daemon/tools/recording_player.hpp"
+
+#include <algorithm>
+
+#include "daemon/app/frame_pipeline.hpp"
+
+namespace hulltrack {
+
+Result<std::unique_ptr<RecordingPlayer>> RecordingPlayer::open(const std::filesystem::path& folder,
+                                                               const Config& config) {
+  if (!std::filesystem::is_directory(folder)) {
+    return Error{folder.string() + ": not a recording folder (it holds lidar.pcap and plc.csv)"};
+  }
+  Result<std::vector<PlcCsvRow>> rows = read_plc_csv(folder / "plc.csv");
+  if (!rows) {
+    return rows.error();
+  }
+  Result<PcapSource> source = PcapSource::open(folder / "lidar.pcap");
+  if (!source) {
+    return source.error();
+  }
+  Result<DatagramRouter> router = DatagramRouter::create(config.lidars);
+  if (!router) {
+    return router.error();
+  }
+  Result<ScanBuilder> builder = ScanBuilder::create(config.lidars, config.framing);
+  if (!builder) {
+    return builder.error();
+  }
+  return std::unique_ptr<RecordingPlayer>(
+      new RecordingPlayer(folder, config, std::move(source).value(), std::move(router).value(),
+                          std::move(builder).value(), std::move(rows).value()));
+}
+
+RecordingPlayer::RecordingPlayer(const std::filesystem::path& folder, const Config& config,
+                                 PcapSource&& source, DatagramRouter&& router, ScanBuilder&& builder,
+                                 std::vector<PlcCsvRow>&& rows)
+    : pcap_name_((folder / "lidar.pcap").string()),
+      plc_(config.plc),
+      source_(std::move(source)),
+      router_(std::move(router)),
+      builder_(std::move(builder)),
+      rows_(std::move(rows)),
+      gate_(joint_gate_config(config.plc)) {}
+
+Result<bool> RecordingPlayer::next(Scan& scan) {
+  Result<bool> frame = read_until_frame(scan);
+  if (!frame || !*frame) {
+    return frame;
+  }
+  play_plc_until(scan.segments.empty() ? scan.end : scan.last_firing);
+  played_ = scan.end;
+  const bool frozen =
+      plc_.heartbeat_timeout > Nanoseconds{0} && scan.end - last_news_ > plc_.heartbeat_timeout;
+  inputs_.hold = latch_.hold();
+  inputs_.reacquire = latch_.take_reacquire();
+  inputs_.plc_faults = static_cast<Faults>(value_fault_ | (frozen ? fault::plc_stale : 0));
+  return true;
+}
+
+Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
+  while (!builder_.take(scan)) {
+    if (at_end_) {
+      return false;
+    }
+    Datagram datagram;
+    const Result<bool> more = source_.next(datagram);
+    if (!more) {
+      return more;
+    }
+    if (!*more) {
+      at_end_ = true;
+      if (datagrams_ == 0) {
+        return Error{pcap_name_ + ": no datagram for any [[lidar]]; " + source_.explain_nothing_found()};
+      }
+      builder_.finish();
+      continue;
+    }
+    if (const auto lidar = router_.lidar_of(datagram)) {
+      ++datagrams_;
+      builder_.add(*lidar, datagram);
+    }
+  }
+  return true;
+}
+
+void RecordingPlayer::play_plc_until(MeasurementTime last_firing) {
+  const auto bracketed = [&] { return joints_.newest() && joints_.newest()->time >= last_firing; };
+  while (next_row_ < rows_.size() && !bracketed()) {
+    const PlcCsvRow& row = rows_[next_row_];
+    if (measurement_time_from_ns(row.t_ns) - plc_.latency > last_firing + JointHistory::kMaxGap) {
+      return;
+    }
+    play_row(row);
+    ++next_row_;
+  }
+}
+
+void RecordingPlayer::play_row(const PlcCsvRow& row) {
+  const MeasurementTime presented = measurement_time_from_ns(row.t_ns);
+  if (latch_.read(row.command)) {
+    gate_.reacquire();
+  }
+  const JointSample sample{presented - plc_.latency,
+                           joints_from_plc(row.d_x, row.theta_r_deg, row.theta_p_deg)};
+  const JointGate::Outcome outcome = gate_.offer({sample, static_cast<std::uint16_t>(row.heartbeat)});
+  value_fault_ = outcome.faults;
+  if (outcome.verdict != JointGate::Verdict::no_news) {
+    last_news_ = presented;
+  }
+  if (outcome.verdict == JointGate::Verdict::believed) {
+    joints_.add(sample);
+  }
+}
+
+double RecordingPlayer::share() const {
+  const double span = static_cast<double>(rows_.back().t_ns - rows_.front().t_ns);
+  const double played = static_cast<double>(to_ns(played_) - rows_.front().t_ns);
+  return span > 0.0 ? std::clamp(played / span, 0.0, 1.0) : 1.0;
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,68 @@
+// A recording folder, frame by frame, as the service would have seen it.
+//
+// lidar.pcap goes through the router, the decoders and the scan builder; plc.csv through the joint gate and
+// the command latch, up to the sample that brackets a frame or 250 ms beyond it. The recording's UTC stamps
+// are the measurement time. Deterministic. Failure: one line with the file and what to do. Thread rule: one
+// owner. Memory: plc.csv as a whole, one frame of LiDAR data at a time.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/io/plc_csv.hpp"
+#include "core/kinematics/joint_gate.hpp"
+#include "core/tracking/hull_tracker.hpp"
+#include "daemon/app/command_word.hpp"
+#include "daemon/config/config.hpp"
+#include "lidar_drivers/datagram_router.hpp"
+#include "lidar_drivers/pcap_source.hpp"
+#include "lidar_drivers/scan_builder.hpp"
+
+namespace hulltrack {
+
+class RecordingPlayer {
+ public:
+  /// `config` is copied as far as it is needed.
+  [[nodiscard]] static Result<std::unique_ptr<RecordingPlayer>> open(const std::filesystem::path& folder,
+                                                                     const Config& config);
+
+  /// True: `scan` is the next frame, and joints() and inputs() hold what the PLC had said by then.
+  /// False: the recording is at its end. An error: it breaks off here.
+  [[nodiscard]] Result<bool> next(Scan& scan);
+
+  [[nodiscard]] const JointHistory& joints() const { return joints_; }
+  [[nodiscard]] const FrameInputs& inputs() const { return inputs_; }
+
+  /// How much of the recording's time has been played, 0..1.
+  [[nodiscard]] double share() const;
+
+ private:
+  RecordingPlayer(const std::filesystem::path& folder, const Config& config, PcapSource&& source,
+                  DatagramRouter&& router, ScanBuilder&& builder, std::vector<PlcCsvRow>&& rows);
+  [[nodiscard]] Result<bool> read_until_frame(Scan& scan);
+  void play_plc_until(MeasurementTime last_firing);
+  void play_row(const PlcCsvRow& row);
+
+  std::string pcap_name_;
+  PlcConfig plc_;
+  PcapSource source_;
+  DatagramRouter router_;
+  ScanBuilder builder_;
+  bool at_end_ = false;
+  std::uint64_t datagrams_ = 0;
+
+  std::vector<PlcCsvRow> rows_;
+  std::size_t next_row_ = 0;
+  JointGate gate_;
+  CommandLatch latch_;
+  JointHistory joints_;
+  FrameInputs inputs_;
+  Faults value_fault_ = 0;
+  MeasurementTime last_news_{};
+  MeasurementTime played_{};
+};
+
+}  // namespace hulltrack

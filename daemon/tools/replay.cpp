@@ -1,0 +1,170 @@
+// `hulltrack replay`: a recording through the very code of the service, faster than real time.
+#include <unistd.h>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/io/map_file.hpp"
+#include "core/io/plc_csv.hpp"
+#include "daemon/app/frame_pipeline.hpp"
+#include "daemon/config/read_config.hpp"
+#include "daemon/tools/frame_csv.hpp"
+#include "daemon/tools/recording_player.hpp"
+#include "daemon/tools/replay_summary.hpp"
+#include "daemon/tools/tools.hpp"
+#include "lidar_drivers/model_registry.hpp"
+
+namespace hulltrack {
+namespace {
+
+struct ReplayOptions {
+  std::string folder;
+  std::string config;
+  std::string csv;
+  MetricsScope metrics = MetricsScope::visible_subset;
+  bool no_timing = false;
+  bool quiet = false;
+};
+
+/// "12 %, 8 s left" on one line of standard error, once a second, if somebody is watching.
+class Progress {
+ public:
+  explicit Progress(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
+  ~Progress() {
+    if (shown_) {
+      std::fprintf(stderr, "\r\033[K");
+    }
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void show(double share, std::uint32_t frame) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!shown_ || now - last_ < std::chrono::seconds(1)) {
+      return;
+    }
+    last_ = now;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double left = share > 0.0 ? elapsed * (1.0 - share) / share : 0.0;
+    std::fprintf(stderr, "\rframe %u, %.0f %%, %.0f s left \033[K", frame, 100.0 * share, left);
+  }
+
+ private:
+  bool shown_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = start_;
+};
+
+template <typename T>
+T value_or_throw(Result<T> result) {
+  if (!result) {
+    throw ToolError(result.error().message);
+  }
+  return std::move(result).value();
+}
+
+void must(const Result<void>& done) {
+  if (!done) {
+    throw ToolError(done.error().message);
+  }
+}
+
+Config load_config(const ReplayOptions& options) {
+  const std::filesystem::path file =
+      options.config.empty() ? std::filesystem::path(options.folder) / "hulltrackd.toml" : options.config;
+  std::vector<std::string> models;
+  for (const LidarModel& model : lidar_models()) {
+    models.emplace_back(model.name);
+  }
+  ConfigReading reading = read_config(file, models);
+  if (!reading.config) {
+    std::string text;
+    for (const Problem& problem : reading.problems) {
+      text += (text.empty() ? "" : "\n") + to_string(problem);
+    }
+    throw ToolError(text);
+  }
+  reading.config->tracker.metrics_scope = options.metrics;
+  return std::move(*reading.config);
+}
+
+std::vector<TruthRow> load_truth(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "truth.csv";
+  return std::filesystem::exists(file) ? value_or_throw(read_truth_csv(file)) : std::vector<TruthRow>{};
+}
+
+void replay(const ReplayOptions& options) {
+  const Config config = load_config(options);
+  std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
+  ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
+  FramePipeline pipeline(config,
+                         std::make_shared<const HullMap>(value_or_throw(read_hull_map(config.map_file))));
+  std::optional<FrameCsv> csv;
+  if (!options.csv.empty()) {
+    csv = value_or_throw(FrameCsv::create(options.csv));
+  }
+
+  Scan scan;
+  std::string broken_off;
+  {
+    Progress progress(!options.quiet);
+    for (;;) {
+      const Result<bool> more = player->next(scan);
+      if (!more) {
+        broken_off = more.error().message;
+        break;
+      }
+      if (!*more) {
+        break;
+      }
+      const FrameReport report = pipeline.process(scan, player->joints(), player->inputs());
+      const double ms = to_milliseconds(report.processing);
+      summary.add(report.track, ms);
+      if (csv) {
+        must(csv->write(report.track, options.no_timing ? std::nullopt : std::optional(ms)));
+      }
+      progress.show(player->share(), scan.frame_number);
+    }
+  }
+  if (csv) {
+    must(csv->close());
+  }
+  if (!options.quiet) {
+    std::fputs(summary.text(!options.no_timing).c_str(), stderr);
+  }
+  if (!broken_off.empty()) {
+    throw ToolError(broken_off);
+  }
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand(
+      "replay", "Track a recording with the code of the service; per-frame CSV and summary.");
+  command
+      ->add_option("REC", options->folder,
+                   "recording folder: lidar.pcap, plc.csv and, if simulated, truth.csv")
+      ->required();
+  command->add_option("--config", options->config, "configuration; default REC/hulltrackd.toml");
+  command->add_option("--csv", options->csv, "write one line a frame to this file");
+  const std::map<std::string, MetricsScope> scopes{{"visible", MetricsScope::visible_subset},
+                                                   {"full", MetricsScope::visible_full},
+                                                   {"paper", MetricsScope::whole_map}};
+  command
+      ->add_option(
+          "--metrics", options->metrics,
+          "map points of the distances: visible (fixed subset), full (all visible), paper (whole map)")
+      ->transform(CLI::CheckedTransformer(scopes).description("{visible,full,paper}"))
+      ->default_str("visible");
+  command->add_flag("--no-timing", options->no_timing,
+                    "leave the column ms empty, so that two runs compare byte for byte");
+  command->add_flag("--quiet", options->quiet, "neither progress nor summary");
+  command->footer("Example: hulltrack replay REC --csv frames.csv");
+  command->callback([options] { replay(*options); });
+}
+
+}  // namespace hulltrack
