@@ -1,0 +1,171 @@
+#include "core/tracking/hull_tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/analytic_ship.hpp"
+
+namespace hulltrack {
+namespace {
+
+using testing::AnalyticShip;
+using testing::ScanOptions;
+
+const std::shared_ptr<const HullMap>& shared_map() {
+  static const auto map = std::make_shared<const HullMap>(AnalyticShip::bulk_carrier().map(0.07, 1));
+  return map;
+}
+
+TrackerConfig tracker_config() {
+  TrackerConfig config;
+  config.hull.reference_point = {3.0, -6.0, 1.4};
+  config.hull.region = Box{{-40, -20, -10}, {40, 20, 20}};
+  return config;
+}
+
+const SensorConfig& sensor() {
+  static const SensorConfig s = testing::looking_down({-1.0, -3.0, 17.0});
+  return s;
+}
+
+Pose displaced(const Eigen::Vector3d& t, const Eigen::Vector3d& rpy_deg = Eigen::Vector3d::Zero()) {
+  return pose_from_xyz_rpy_deg(t, rpy_deg);
+}
+
+/// A tracker over the analytic ship, and what it says frame after frame.
+class Track {
+ public:
+  Track() : tracker_(tracker_config(), {}, {sensor()}, shared_map()) {}
+
+  TrackResult step(const AnalyticShip* ship, ScanOptions options, const FrameInputs& inputs = {}) {
+    options.frame = frame_++;
+    return tracker_.process(testing::scan_ship(ship, sensor(), options), joints_, inputs);
+  }
+  TrackResult settle(const Pose& T_W_H) {
+    TrackResult result;
+    for (int i = 0; i < 6; ++i) {
+      result = step(&ship_, {.T_W_H = T_W_H});
+    }
+    return result;
+  }
+  const AnalyticShip& ship() const { return ship_; }
+
+ private:
+  AnalyticShip ship_ = AnalyticShip::bulk_carrier();
+  HullTracker tracker_;
+  JointHistory joints_ = testing::joints_at_rest(30.0);
+  std::uint32_t frame_ = 0;
+};
+
+double error(const TrackResult& result, const Pose& T_W_H) {
+  const Eigen::Vector3d p = tracker_config().hull.reference_point;
+  return (result.T_W_H * p - T_W_H * p).norm();
+}
+
+TEST(HullTracker, FindsAMooredHullAndSaysSo) {
+  for (const auto& [t, rpy] :
+       {std::pair{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 0)},
+        std::pair{Eigen::Vector3d(0.04, -0.03, -0.05), Eigen::Vector3d(0.05, 0.03, -0.04)}}) {
+    Track track;
+    const Pose T_W_H = displaced(t, rpy);
+    const TrackResult result = track.settle(T_W_H);
+    EXPECT_EQ(result.state, State::tracking) << result.reason;
+    EXPECT_TRUE(result.health);
+    EXPECT_LT(error(result, T_W_H), 0.03);
+    EXPECT_LT(result.metrics.q1, 0.12);
+    EXPECT_GT(result.sigma_translation, 0.0);
+    EXPECT_LT(result.sigma_translation, 0.05);
+  }
+}
+
+TEST(HullTracker, IsNeverHealthyOnAHullThatItDoesNotFind) {
+  // Shifts beyond what the gate of 0.3 m can follow: along, across, both, up, down, turned.
+  for (const auto& [t, yaw] :
+       {std::pair{Eigen::Vector3d(1, 0, 0), 0.0}, std::pair{Eigen::Vector3d(-0.5, 0, 0), 0.0},
+        std::pair{Eigen::Vector3d(5, 0, 0), 0.0}, std::pair{Eigen::Vector3d(0, 1.0, 0), 0.0},
+        std::pair{Eigen::Vector3d(0, -0.6, 0), 0.0}, std::pair{Eigen::Vector3d(1, 1, 0), 0.0},
+        std::pair{Eigen::Vector3d(0, 0, 1.5), 0.0}, std::pair{Eigen::Vector3d(0, 0, -2), 0.0},
+        std::pair{Eigen::Vector3d(0, 0, 0), 3.0}}) {
+    Track track;
+    const Pose T_W_H = displaced(t, {0, 0, yaw});
+    for (int i = 0; i < 8; ++i) {
+      const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
+      EXPECT_TRUE(!result.health || error(result, T_W_H) < 0.10)
+          << t.transpose() << ", yaw " << yaw << ": error " << error(result, T_W_H);
+    }
+  }
+}
+
+TEST(HullTracker, LosesAHullThatDepartsInAnyDirection) {
+  for (const Eigen::Vector3d& direction : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0),
+                                           Eigen::Vector3d(0.7, 0.7, 0), Eigen::Vector3d(-1, 0, 0)}) {
+    Track track;
+    ASSERT_TRUE(track.settle(Pose::Identity()).health);
+    for (int i = 1; i <= 40; ++i) {
+      const double t = 0.1 * i;
+      const Pose T_W_H = displaced(0.5 * 0.1 * t * t * direction);  // 0.1 m/s^2
+      const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
+      ASSERT_TRUE(!result.health || error(result, T_W_H) < 0.10)
+          << direction.transpose() << " at " << t << " s";
+      ASSERT_TRUE(!result.health || 0.1 * t < 0.3 + 0.1 * 0.5) << "0.5 s after passing max_speed";
+    }
+  }
+}
+
+TEST(HullTracker, IsNotHealthyOnAnEmptyBerthOrAnotherShip) {
+  Track track;
+  const AnalyticShip other = AnalyticShip::other_carrier();
+  ASSERT_TRUE(track.settle(Pose::Identity()).health);
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_FALSE(track.step(nullptr, {}).health);
+  }
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_FALSE(track.step(&other, {}).health);
+  }
+}
+
+TEST(HullTracker, SameCallsGiveTheSameBits) {
+  Track a;
+  Track b;
+  for (int i = 0; i < 7; ++i) {
+    const Pose T_W_H = displaced({0.005 * i, 0, 0});
+    const TrackResult ra = a.step(&a.ship(), {.T_W_H = T_W_H});
+    const TrackResult rb = b.step(&b.ship(), {.T_W_H = T_W_H});
+    EXPECT_EQ(ra.T_W_H.matrix(), rb.T_W_H.matrix());
+    EXPECT_EQ(ra.metrics.q1, rb.metrics.q1);
+    EXPECT_EQ(ra.state, rb.state);
+  }
+}
+
+TEST(HullTracker, EmptyScanIsAStateNotACrash) {
+  Track track;
+  ASSERT_TRUE(track.settle(Pose::Identity()).health);
+  const TrackResult result = track.step(nullptr, {.drop = 1.1});
+  EXPECT_FALSE(result.registered);
+  EXPECT_EQ(result.state, State::lost);
+  EXPECT_FALSE(result.metrics.valid);
+  EXPECT_FALSE(result.reason.empty());
+}
+
+TEST(HullTracker, ScanThatJointsDoNotBracketIsNotRegistered) {
+  Track track;
+  ASSERT_TRUE(track.settle(Pose::Identity()).health);
+  HullTracker tracker(tracker_config(), {}, {sensor()}, shared_map());
+  ScanOptions options;
+  options.frame = 10'000;
+  const TrackResult result = tracker.process(testing::scan_ship(&track.ship(), sensor(), options),
+                                             testing::joints_at_rest(30.0), {});
+  EXPECT_FALSE(result.registered);
+  EXPECT_EQ(result.state, State::fault);
+  EXPECT_EQ(result.faults, fault::plc_stale);
+}
+
+TEST(HullTracker, HoldMeansNoTracking) {
+  Track track;
+  ASSERT_TRUE(track.settle(Pose::Identity()).health);
+  const TrackResult result = track.step(&track.ship(), {}, {.hold = true});
+  EXPECT_EQ(result.state, State::held);
+  EXPECT_FALSE(result.registered);
+}
+
+}  // namespace
+}  // namespace hulltrack

@@ -1,0 +1,114 @@
+#include "core/tracking/visibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/analytic_ship.hpp"
+
+namespace hulltrack {
+namespace {
+
+using testing::AnalyticShip;
+
+TEST(FastAtan2, IsWithinAFewMicroradians) {
+  for (int i = 0; i < 100'000; ++i) {
+    const double angle = -3.14159 + 6.28318 * i / 100'000;
+    const auto x = static_cast<float>(7.0 * std::cos(angle));
+    const auto y = static_cast<float>(7.0 * std::sin(angle));
+    ASSERT_NEAR(fast_atan2(y, x), std::atan2(y, x), 2e-5) << angle;
+  }
+  EXPECT_EQ(fast_atan2(0.0F, 0.0F), 0.0F);
+}
+
+TEST(SphericalGrid, NeighboursWrapAroundAndStopAtThePoles) {
+  EXPECT_EQ((SphericalGrid::Cell{10, 359}.moved(0, 1).column), 0);
+  EXPECT_EQ((SphericalGrid::Cell{10, 0}.moved(0, -1).column), 359);
+  EXPECT_EQ((SphericalGrid::Cell{0, 5}.moved(-1, 0).row), 0);
+  EXPECT_EQ((SphericalGrid::Cell{179, 5}.moved(1, 0).row), 179);
+}
+
+struct Sight {
+  AnalyticShip ship = AnalyticShip::bulk_carrier();
+  HullMap map{ship.map(0.1, 1)};
+  SensorConfig sensor = testing::looking_down({-1.0, -3.0, 17.0});
+  ScanFilter filter{{}, {sensor}, std::nullopt};
+  FilteredScan filtered;
+  std::vector<ScanView> views = std::vector<ScanView>(1);
+  std::vector<VisiblePoint> visible;
+
+  void look(const AnalyticShip* scanned) {
+    filter.run(testing::scan_ship(scanned, sensor, {}), testing::joints_at_rest(1.0), filtered);
+    views[0].rebuild(filtered.returns, 0, sensor.mount);
+    Visibility(25.0).run(map, map.subset_H(), Pose::Identity(), views, std::vector{sensor}, visible);
+  }
+
+  /// Whether a point of the map is the first thing on its own ray, to `tolerance`.
+  bool truly_in_sight(const Point& p_H, double tolerance) const {
+    const Eigen::Vector3d o = sensor.mount.translation();
+    const Eigen::Vector3d d = p_H.cast<double>() - o;
+    const auto hit = ship.cast(o, d.normalized());
+    return hit && *hit > d.norm() - tolerance;
+  }
+};
+
+TEST(Visibility, VisiblePointsAreInSightByRayCasting) {
+  Sight sight;
+  sight.look(&sight.ship);
+  ASSERT_GT(sight.visible.size(), 1000u);
+  std::size_t hidden = 0;
+  for (const VisiblePoint& v : sight.visible) {
+    EXPECT_LE(v.p_L.norm(), 25.0F);
+    hidden += sight.truly_in_sight(sight.map.subset_H()[v.index], 0.5) ? 0 : 1;
+  }
+  EXPECT_LT(hidden, sight.visible.size() / 50) << "behind something by more than the tolerance";
+}
+
+TEST(Visibility, MostPointsInSightAreVisible) {
+  Sight sight;
+  sight.look(&sight.ship);
+  std::vector<bool> visible(sight.map.subset_H().size(), false);
+  for (const VisiblePoint& v : sight.visible) {
+    visible[v.index] = true;
+  }
+  std::size_t in_sight = 0;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    const Point p_L = (sight.sensor.mount.inverse() * sight.map.subset_H()[i].cast<double>()).cast<float>();
+    const bool in_view = std::abs(std::atan2(p_L.y(), p_L.x())) < radians(59.0) &&
+                         std::abs(std::asin(p_L.z() / p_L.norm())) < radians(44.0) && p_L.norm() < 25.0F;
+    if (in_view && sight.truly_in_sight(sight.map.subset_H()[i], 0.05)) {
+      ++in_sight;
+      found += visible[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(found, in_sight * 8 / 10) << "1 deg cells hide the far half of a surface seen at a low angle";
+}
+
+TEST(Visibility, PointsBehindTheScansReturnsAreNotExpected) {
+  Sight sight;
+  sight.look(&sight.ship);
+  const std::size_t clear = sight.visible.size();
+  for (Return& r : sight.filtered.returns) {  // a chute 5 m before the sensor hides the half with y > -3
+    const Point d = r.p_W - sight.sensor.mount.translation().cast<float>();
+    if (d.y() > 0.0F) {
+      r.p_W = sight.sensor.mount.translation().cast<float>() + 5.0F * d.normalized();
+    }
+  }
+  sight.views[0].rebuild(sight.filtered.returns, 0, sight.sensor.mount);
+  Visibility(25.0).run(sight.map, sight.map.subset_H(), Pose::Identity(), sight.views,
+                       std::vector{sight.sensor}, sight.visible);
+  EXPECT_LT(sight.visible.size(), clear * 7 / 10);
+  for (const VisiblePoint& v : sight.visible) {
+    EXPECT_LT(sight.map.subset_H()[v.index].y(), -2.0F);
+  }
+}
+
+TEST(Visibility, FieldOfViewIsWhereReturnsEverCameFrom) {
+  Sight sight;
+  sight.look(&sight.ship);
+  const std::size_t all = sight.visible.size();
+  sight.look(nullptr);  // the ship is gone, the quay lies deeper: what was looked at stays looked at
+  EXPECT_GT(sight.visible.size(), all * 9 / 10);
+}
+
+}  // namespace
+}  // namespace hulltrack
