@@ -15,8 +15,8 @@ constexpr int kSteps = 5;                // reweighting settles to a tenth of a 
 constexpr double kKernel = 0.05;         // m: two to three sigma of a return against a 5 cm map
 constexpr double kSmallestSigma = 0.01;  // m: a LiDAR's range noise; a lucky scan is not better than that
 // sigma^2 H^-1 of scan matching is overconfident, because neighbouring residuals share the map's errors:
-// NEES/6 of 3 with a robust kernel and up to 15 without have been measured on such scenes; 3^2 covers 9.
-constexpr double kInflation = 3.0;
+// NEES/6 of 3 has been measured on such scenes with a robust kernel; 2^2 covers it.
+constexpr double kInflation = 2.0;
 constexpr double kLength = 10.0;  // m, makes rotations comparable to translations: half a hatch
 
 struct Normal {

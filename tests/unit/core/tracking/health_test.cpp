@@ -85,10 +85,10 @@ const std::vector<Case>& cases() {
        State::degraded, fault::unconstrained},
       {"outside the envelope", [](Evidence& e) { e.displacement.y() = 2.01; }, State::lost,
        fault::implausible},
-      {"jump", [](Evidence& e) { e.displacement.x() = 0.14; }, State::degraded, fault::implausible},
+      {"jump", [](Evidence& e) { e.displacement.x() = 1.5; }, State::degraded, fault::implausible},
       {"turn",
        [](Evidence& e) {
-         e.rotation = rotation_from_rpy({0, 0, radians(0.5)});
+         e.rotation = rotation_from_rpy({0, 0, radians(5.0)});
        },
        State::degraded, fault::implausible},
       {"joints do not bracket", [](Evidence& e) { e.bracketed = e.registered = false; }, State::fault,
