@@ -115,10 +115,10 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
     check_distances(limits, e, findings);
     check_integrity(e, findings);
     check_envelope(limits, e, findings);
-    if (findings.state != State::lost) {
+    check_jump(limits, memory, e, findings);
+    if (findings.state != State::lost && (findings.faults & fault::implausible) == 0) {
       memory.motion.add(e.time, e.displacement);
     }
-    check_jump(limits, memory, e, findings);
     check_speed(limits, memory, findings);
   }
 

@@ -33,11 +33,19 @@ struct SurfaceCount {
   [[nodiscard]] double share() const { return expected == 0 ? 0.0 : double(confirmed) / double(expected); }
 };
 
-/// One surfel and the return of the ray that should have met it.
+/// One surfel and what the rays around it found.
 struct SurfelObservation {
   Eigen::Vector3d p_W;  // where the pose puts the surfel
   Eigen::Vector3d n_W;  // its normal
-  double offset;        // n . (return - p), m: how far the surface really is along the normal
+  double offset;        // n . (return - p), m, mean: how far the surface really is along the normal
+  double weight = 1.0;  // independent returns that the mean is worth
+};
+
+/// A ray that meets a surfel's plane near it.
+struct RayEnd {
+  float besides2;  // squared distance from the surfel in its plane, m^2
+  float offset;    // n . (return - p), m
+  float depth;     // return's range minus the plane's along the same ray, m
 };
 
 /// A least squares step of observations: the pose's remaining error as the scan sees it.
@@ -82,6 +90,7 @@ class Integrity {
 
  private:
   std::vector<SurfelObservation> observations_;
+  std::vector<RayEnd> rays_;
 };
 
 }  // namespace hulltrack

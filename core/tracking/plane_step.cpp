@@ -37,20 +37,20 @@ Normal accumulate(std::span<const SurfelObservation> observations, const Eigen::
     const Vector6 j = jacobian(o, centre);
     const double r = o.offset - j.dot(x);
     const double k2 = kKernel * kKernel;
-    const double w = k2 * k2 / ((k2 + r * r) * (k2 + r * r));
+    const double w = o.weight * k2 * k2 / ((k2 + r * r) * (k2 + r * r));
     normal.H.noalias() += w * j * j.transpose();
     normal.g.noalias() += w * o.offset * j;
   }
   return normal;
 }
 
-/// 1.4826 times the median absolute residual.
+/// Sigma of one return: 1.4826 times the median absolute residual, each scaled to a single return.
 double robust_sigma(std::span<const SurfelObservation> observations, const Eigen::Vector3d& centre,
                     const Vector6& x) {
   std::vector<double> residuals;
   residuals.reserve(observations.size());
   for (const SurfelObservation& o : observations) {
-    residuals.push_back(std::abs(o.offset - jacobian(o, centre).dot(x)));
+    residuals.push_back(std::sqrt(o.weight) * std::abs(o.offset - jacobian(o, centre).dot(x)));
   }
   const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
   std::nth_element(residuals.begin(), middle, residuals.end());

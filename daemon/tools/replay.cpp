@@ -72,8 +72,9 @@ void must(const Result<void>& done) {
 }
 
 Config load_config(const ReplayOptions& options) {
-  const std::filesystem::path file =
-      options.config.empty() ? std::filesystem::path(options.folder) / "hulltrackd.toml" : options.config;
+  const std::filesystem::path file = options.config.empty()
+                                         ? std::filesystem::path(options.folder) / "hulltrackd.toml"
+                                         : std::filesystem::path(options.config);
   std::vector<std::string> models;
   for (const LidarModel& model : lidar_models()) {
     models.emplace_back(model.name);

@@ -1,0 +1,84 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "daemon/tools/frame_csv.hpp"
+#include "daemon/tools/replay_summary.hpp"
+
+namespace hulltrack {
+namespace {
+
+using ::testing::HasSubstr;
+
+TrackResult result(std::uint32_t frame, double x, State state) {
+  TrackResult r;
+  r.frame = frame;
+  r.time = MeasurementTime{std::chrono::milliseconds(50 + 100 * frame)};
+  r.registered = true;
+  r.displacement = {x, 0.0, 0.0};
+  r.T_W_H.translation() = r.displacement;
+  r.state = state;
+  r.health = state == State::tracking;
+  r.metrics = {true, 0.07, 0.08, 0.09, 0.1, 0.125, 1000};
+  r.matched = 900;
+  r.iterations = 4;
+  return r;
+}
+
+TEST(FrameCsv, LineHasTheFieldsOfItsHeader) {
+  const auto commas = [](const std::string& s) { return std::count(s.begin(), s.end(), ','); };
+  TrackResult registered = result(3, 0.1, State::tracking);
+  TrackResult not_registered;
+  not_registered.state = State::fault;
+  not_registered.faults = fault::plc_stale;
+  EXPECT_EQ(frame_csv_line(registered, 1.5),
+            "3,350000000,1,1,0,0.1,0,0,0,0,0,0.07,0.08,0.09,0.1,0.125,900,-1,-1,4,1.5");
+  EXPECT_EQ(frame_csv_line(not_registered, std::nullopt), "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0,");
+  EXPECT_EQ(commas(frame_csv_line(not_registered, std::nullopt)), commas(kFrameCsvHeader));
+  EXPECT_EQ(commas(frame_csv_line(registered, 1.5)), commas(kFrameCsvHeader));
+}
+
+TEST(TruthAt, InterpolatesInsideAndIsSilentOutside) {
+  const std::vector<TruthRow> truth{{100, {0, 0, 0}, {0, 0, 0}}, {200, {1, 2, 3}, {0, 0, 10}}};
+  EXPECT_FALSE(truth_at(truth, 99));
+  EXPECT_FALSE(truth_at(truth, 201));
+  EXPECT_TRUE(truth_at(truth, 100)->xyz.isZero());
+  EXPECT_TRUE(truth_at(truth, 125)->xyz.isApprox(Eigen::Vector3d(0.25, 0.5, 0.75)));
+  EXPECT_DOUBLE_EQ(truth_at(truth, 125)->rpy_deg.z(), 2.5);
+}
+
+/// A hull at rest for 3 s, then 0.5 m/s along x.
+std::vector<TruthRow> departing_truth() {
+  std::vector<TruthRow> truth;
+  for (int i = 0; i <= 600; ++i) {
+    const double t = 0.01 * i;
+    truth.push_back({i * 10'000'000LL, {0.5 * std::max(0.0, t - 3.0), 0, 0}, {0, 0, 0}});
+  }
+  return truth;
+}
+
+TEST(ReplaySummary, CountsWrongHealthyFramesAndTheReaction) {
+  ReplaySummary summary(departing_truth(), 0.3);
+  for (std::uint32_t frame = 0; frame < 60; ++frame) {
+    // Stays healthy at x = 0 until frame 34, 0.45 s after the hull began to move.
+    summary.add(result(frame, 0.0, frame <= 34 ? State::tracking : State::lost), 2.0);
+  }
+  const std::string text = summary.text(true);
+  EXPECT_THAT(text, HasSubstr("frames      60"));
+  EXPECT_THAT(text, HasSubstr("tracking 35 lost 25"));
+  EXPECT_THAT(text, HasSubstr("max 0.225 m of 35 healthy frames"));
+  EXPECT_THAT(text, HasSubstr("3 healthy frames off by more than 0.10 m")) << text;  // 0.125, 0.175, 0.225
+  EXPECT_THAT(text, HasSubstr("frame 32: the pose is off by 0.10 m; health 0 after 0.3 s")) << text;
+  EXPECT_THAT(text, HasSubstr("median 2.0 ms"));
+  EXPECT_EQ(summary.text(false).find(" ms"), std::string::npos);
+}
+
+TEST(ReplaySummary, WithoutTruthThereAreNoErrors) {
+  ReplaySummary summary({}, 0.3);
+  summary.add(result(0, 0.0, State::tracking), 1.0);
+  EXPECT_EQ(summary.text(true).find("error"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hulltrack
