@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/text.hpp"
+#include "core/kinematics/joint_history.hpp"
 
 namespace hulltrack {
 namespace {
@@ -101,6 +102,23 @@ void check_speed(const HealthLimits& limits, const HealthMemory& memory, Finding
   }
 }
 
+void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
+  if (memory.acquired && (e.integrity.faults & fault::contradicted) != 0) {
+    memory.seen_elsewhere += std::clamp(e.time - memory.last_judged, Nanoseconds{0}, JointHistory::kMaxGap);
+    if (memory.seen_elsewhere > kSeenElsewhere) {
+      memory.ambiguous = true;
+      memory.acquired = false;
+    }
+  }
+  memory.last_judged = e.time;
+  if (memory.ambiguous) {
+    findings.add(
+        State::lost, fault::ambiguous,
+        format_text("the hull was elsewhere for %.0f s and may lie at another hatch: confirm by re-acquire",
+                    to_seconds(kSeenElsewhere)));
+  }
+}
+
 HealthVerdict idle(HealthMemory& memory, State state, Faults faults, std::string reason) {
   memory.good_frames = 0;
   memory.state = state;
@@ -114,6 +132,7 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   if (e.registered) {
     check_distances(limits, e, findings);
     check_integrity(e, findings);
+    check_continuity(memory, e, findings);
     check_envelope(limits, e, findings);
     check_jump(limits, memory, e, findings);
     if (findings.state != State::lost && (findings.faults & fault::implausible) == 0) {
@@ -131,6 +150,7 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   }
   if (findings.state == State::tracking) {
     memory.acquired = true;
+    memory.seen_elsewhere = Nanoseconds{0};
     memory.last = HealthMemory::HealthyPose{e.time, e.displacement, e.rotation};
   } else if (!memory.acquired) {
     findings.state = State::acquiring;

@@ -8,7 +8,9 @@
 //   degraded   a pose, but: Q1 above q1_healthy, not converged, not constrained, implausible, or recovering
 //   lost       no pose to trust: none found, too few matches, Q1 above q1_lost, contradicted by the scan
 //   acquiring  instead of degraded and lost until health is first 1, and again after a re-acquire edge
-// Metres, radians. The pose's age is the publisher's business.
+// A hull that the scan saw elsewhere for kSeenElsewhere may come to rest where its next hatch looks like the
+// one in the map. No figure of a frame can tell: from then on it is ambiguous and acquiring until a
+// re-acquire edge. Metres, radians. The pose's age is the publisher's business.
 #pragma once
 
 #include <optional>
@@ -40,6 +42,9 @@ struct Evidence {
   IntegrityFinding integrity;
 };
 
+/// At 0.3 m/s, a usual max_speed, a hull moves 6 m in this time: less than any ship's hatch pitch.
+inline constexpr Nanoseconds kSeenElsewhere = std::chrono::seconds(20);
+
 struct HealthMemory {
   struct HealthyPose {
     MeasurementTime time;
@@ -49,6 +54,9 @@ struct HealthMemory {
   State state = State::starting;
   bool acquired = false;            // health has been 1 since the start or the last re-acquire edge
   int good_frames = 0;              // in a row
+  Nanoseconds seen_elsewhere{0};    // frames that contradicted the pose since the last healthy one, together
+  MeasurementTime last_judged{};    // the latest frame with a pose
+  bool ambiguous = false;           // seen elsewhere for too long: only a re-acquire edge helps
   std::optional<HealthyPose> last;  // the last pose with health 1
   MotionRecord motion;              // of the poses that the scan did not contradict
 };

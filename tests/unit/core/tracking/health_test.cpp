@@ -170,6 +170,29 @@ TEST(Health, ReacquireForgetsTheLastPose) {
   EXPECT_EQ(machine.step(far_away).state, State::tracking);
 }
 
+TEST(Health, HullThatWasElsewhereForLongIsAmbiguousUntilReacquired) {
+  const auto elsewhere = [](Evidence& e) { e.integrity = {fault::contradicted, "off"}; };
+  Machine brief = tracking_machine();
+  for (int i = 0; i < 190; ++i) {  // 19 s
+    EXPECT_EQ(brief.step(elsewhere).faults, fault::contradicted);
+  }
+  brief.run(5);
+  EXPECT_EQ(brief.memory.state, State::tracking);
+
+  Machine machine = tracking_machine();
+  for (int i = 0; i < 210; ++i) {  // 21 s
+    (void)machine.step(elsewhere);
+  }
+  for (int i = 0; i < 100; ++i) {
+    const HealthVerdict verdict = machine.step();
+    EXPECT_EQ(verdict.state, State::acquiring);
+    EXPECT_EQ(verdict.faults, fault::ambiguous);
+  }
+  (void)machine.step([](Evidence& e) { e.reacquire = true; });
+  machine.run(4);
+  EXPECT_EQ(machine.memory.state, State::tracking);
+}
+
 TEST(Health, JumpMayGrowWithTheTimeSinceTheLastHealthyPose) {
   Machine machine = tracking_machine();
   for (int i = 0; i < 10; ++i) {
