@@ -23,7 +23,8 @@ void ScanView::rebuild(std::span<const Return> returns, std::uint16_t lidar, con
     const SphericalGrid::Cell cell = SphericalGrid::cell(p_L);
     unsorted_L_.push_back(p_L);
     cell_of_.push_back(static_cast<std::uint32_t>(cell.index()));
-    rows_seen_.set(static_cast<std::size_t>(cell.row));
+    lowest_row_ = std::min(lowest_row_, cell.row);
+    highest_row_ = std::max(highest_row_, cell.row);
     columns_seen_.set(static_cast<std::size_t>(cell.column));
   }
   sort_by_cell();

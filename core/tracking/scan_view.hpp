@@ -2,13 +2,12 @@
 //
 // Frame L of the LiDAR at the middle of the scan, metres; cells of SphericalGrid. It answers three
 // questions: which returns lie near a direction, how near is the nearest return there, and does the sensor
-// look there at all. The field of view is learned: every cell row and column in which this LiDAR has ever
-// had a return; it only grows, so that a sight that went empty (the ship left, packets were lost) still
-// counts as looked at. Thread rule: one owner. Cost: one pass over the returns, no allocation in steady
-// state.
+// look there at all. The field of view is learned: from the lowest to the highest row (its lasers may be more
+// than a cell apart) and every column in which this LiDAR has ever had a return; it only grows, so that a
+// sight that went empty (the ship left, packets were lost) still counts as looked at. Thread rule: one owner.
+// Cost: one pass over the returns, no allocation in steady state.
 #pragma once
 
-#include <array>
 #include <bitset>
 #include <cstdint>
 #include <span>
@@ -33,7 +32,7 @@ class ScanView {
   }
 
   [[nodiscard]] bool looks_at(SphericalGrid::Cell cell) const {
-    return rows_seen_[static_cast<std::size_t>(cell.row)] &&
+    return cell.row >= lowest_row_ && cell.row <= highest_row_ &&
            columns_seen_[static_cast<std::size_t>(cell.column)];
   }
 
@@ -58,7 +57,8 @@ class ScanView {
   std::vector<std::uint32_t> first_;   // kCells + 1 offsets into points_L_
   std::vector<float> nearest_;         // per cell, m; infinity without a return
   std::vector<float> nearest_around_;  // per cell and its eight neighbours
-  std::bitset<SphericalGrid::kRows> rows_seen_;
+  int lowest_row_ = SphericalGrid::kRows;
+  int highest_row_ = -1;
   std::bitset<SphericalGrid::kColumns> columns_seen_;
 };
 
