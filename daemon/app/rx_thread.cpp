@@ -82,8 +82,7 @@ RxThread::~RxThread() { close(epoll_); }
 
 void RxThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
-    wait();
-    const SteadyTime now = steady_now();
+    const SteadyTime now = receive_waiting();
     pulse_.beat(now);
     builder_.advance(live_measurement_time(now));
     hand_over_scans();
@@ -95,13 +94,15 @@ void RxThread::run(std::stop_token stop) {
   }
 }
 
-void RxThread::wait() {
+SteadyTime RxThread::receive_waiting() {
   std::array<epoll_event, 16> events;
   const int ready = epoll_wait(epoll_, events.data(), static_cast<int>(events.size()),
                                static_cast<int>(kLongestWait.count()));
+  const SteadyTime woken = steady_now();
   for (int i = 0; i < ready; ++i) {
     receive(events[static_cast<std::size_t>(i)].data.u64);
   }
+  return woken;
 }
 
 void RxThread::receive(std::size_t socket) {

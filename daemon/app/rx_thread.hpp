@@ -35,7 +35,8 @@ class RxThread {
     std::uint64_t kernel_overflows = 0;
   };
 
-  void wait();
+  /// Sleeps until datagrams wait, takes them all; gives when it woke: nothing older is left in the sockets.
+  SteadyTime receive_waiting();
   void receive(std::size_t socket);
   void pass_on_counters(std::size_t socket);
   void hand_over_scans();

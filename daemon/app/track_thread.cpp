@@ -11,14 +11,14 @@ namespace {
 /// Longest sleep without a ring: bounds how seldom the watch hears of this thread.
 constexpr std::chrono::milliseconds kLongestWait{100};
 
-/// Joint samples further apart than this bracket nothing, so waiting longer is in vain (ICD 2.1).
-constexpr Nanoseconds kJointPatience = JointHistory::kMaxGap;
-
 }  // namespace
 
 TrackThread::TrackThread(const Config& config, std::shared_ptr<const HullMap> map, Exchange& exchange,
                          Pulse& pulse)
-    : exchange_(exchange), pulse_(pulse), pipeline_(config, std::move(map)) {}
+    : exchange_(exchange),
+      pulse_(pulse),
+      patience_(JointHistory::kMaxGap + config.plc.latency + config.plc.response_timeout),
+      pipeline_(config, std::move(map)) {}
 
 void TrackThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {
@@ -36,15 +36,18 @@ void TrackThread::run(std::stop_token stop) {
 }
 
 JointHistory::Lookup TrackThread::await_joints(const Scan& scan, const std::stop_token& stop) {
-  const SteadyTime deadline = live_steady_time(scan.last_firing) + kJointPatience;
   for (;;) {
     const SteadyTime now = steady_now();
     pulse_.beat(now);
     exchange_.joints.drain_into(joints_);
     const JointHistory::Lookup lookup = joints_.covers(scan.first_firing, scan.last_firing);
+    // One lost poll must cost no frame its health, so even a newer scan waits its turn until it is certain
+    // that no sample brackets this one.
+    const std::optional<JointSample> newest = joints_.newest();
+    const SteadyTime deadline = live_steady_time(newest ? newest->time : scan.last_firing) + patience_;
     const bool may_come =
         lookup == JointHistory::Lookup::after_newest || lookup == JointHistory::Lookup::empty;
-    if (!may_come || now >= deadline || exchange_.scans.has_fresh() || stop.stop_requested()) {
+    if (!may_come || now >= deadline || stop.stop_requested()) {
       return lookup;
     }
     exchange_.track_bell.wait_until(std::min(deadline, now + kLongestWait));

@@ -1,8 +1,8 @@
 // The thread that tracks: newest scan + joints that bracket it -> one frame's result.
 //
-// A scan waits for the joint samples after its last packet, but not for long: until they cannot come any
-// more (a gap, scan end + 250 ms) or a newer scan is there. It is processed in any case; without joints
-// the tracker says so. Thread rule: run() in a thread of its own. Latency: a result is announced at once.
+// A scan waits for the joint samples after its last packet until they are here or cannot come any more; a
+// newer scan waits meanwhile, and replaces one that waits already. It is processed in any case; without
+// joints the tracker says so. Thread rule: run() in a thread of its own. Latency: a result is announced at once.
 #pragma once
 
 #include <memory>
@@ -29,6 +29,9 @@ class TrackThread {
 
   Exchange& exchange_;
   Pulse& pulse_;
+  /// The next sample brackets nothing if it was taken kMaxGap after the newest one (ICD 2.1); it was taken
+  /// plc.latency before it was asked for, and is here at most a response timeout later.
+  Nanoseconds patience_;
   FramePipeline pipeline_;
   JointHistory joints_;
   std::uint32_t reacquire_edges_ = 0;

@@ -1,0 +1,92 @@
+// The track thread alone: this test plays rx and plc, and says when scans and joint samples come.
+#include "daemon/app/track_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "daemon/app/guarded_thread.hpp"
+#include "daemon/app/live_time.hpp"
+#include "tests/integration/service/loader_bench.hpp"
+
+namespace hulltrack {
+namespace {
+
+using std::chrono::milliseconds;
+
+class TrackThreadTest : public testing::Test {
+ protected:
+  /// The thread's patience ends long after the test, however slow the machine.
+  static Prepared patient(Prepared prepared) {
+    prepared.config.plc.response_timeout = std::chrono::minutes(10);
+    return prepared;
+  }
+  void sample(milliseconds after_start) { exchange.joints.push({start + after_start, {}}); }
+  void scan(std::uint32_t number, milliseconds first, milliseconds last) {
+    Scan& scan = exchange.scans.writable();
+    scan.clear();
+    scan.frame_number = number;
+    scan.begin = scan.first_firing = start + first;
+    scan.end = scan.last_firing = start + last;
+    exchange.scans.publish();
+  }
+  /// Rings, and returns when the thread has woken and looked around.
+  void ring() {
+    const SteadyTime rung = steady_now();
+    exchange.track_bell.ring();
+    while (pulse.silence(rung) >= Nanoseconds::zero()) std::this_thread::yield();
+  }
+  FrameDone next_frame() {
+    FrameDone frame = exchange.frame.get();
+    while (frame.sequence <= seen) {
+      std::this_thread::yield();
+      frame = exchange.frame.get();
+    }
+    seen = frame.sequence;
+    return frame;
+  }
+
+  Prepared prepared = patient(room_service(1, 1));
+  Exchange exchange;
+  Pulse pulse{"track", std::chrono::seconds(1), steady_now()};
+  MeasurementTime start = live_measurement_time(steady_now());
+  std::uint64_t seen = 0;
+  TrackThread thread{prepared.config, prepared.map, exchange, pulse};
+  GuardedThread runner{"track", [this](std::stop_token stop) { thread.run(stop); },
+                       [](const std::string&, const std::string& what) { ADD_FAILURE() << what; },
+                       [this] { exchange.track_bell.ring(); }};
+};
+
+TEST_F(TrackThreadTest, ANewerScanDoesNotMakeAnOlderOneGiveUpItsJoints) {
+  sample(milliseconds(0));
+  scan(0, milliseconds(10), milliseconds(110));
+  ring();
+  scan(1, milliseconds(110), milliseconds(210));
+  ring();
+  ring();
+  EXPECT_EQ(exchange.frame.get().sequence, 0U) << "a poll was lost, but the next one still brackets";
+  sample(milliseconds(150));
+  ring();
+  const FrameDone first = next_frame();
+  EXPECT_EQ(first.result.frame, 0U);
+  EXPECT_EQ(first.result.faults & fault::plc_stale, 0);
+  sample(milliseconds(220));
+  ring();
+  const FrameDone second = next_frame();
+  EXPECT_EQ(second.result.frame, 1U);
+  EXPECT_EQ(second.result.faults & fault::plc_stale, 0);
+}
+
+TEST_F(TrackThreadTest, AGapInTheJointsIsToldAtOnce) {
+  sample(milliseconds(0));
+  scan(0, milliseconds(10), milliseconds(110));
+  ring();
+  sample(milliseconds(251));
+  ring();
+  const FrameDone frame = next_frame();
+  EXPECT_NE(frame.result.faults & fault::plc_stale, 0);
+  EXPECT_FALSE(frame.result.health);
+}
+
+}  // namespace
+}  // namespace hulltrack
