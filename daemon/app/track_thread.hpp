@@ -2,7 +2,8 @@
 //
 // A scan waits for the joint samples after its last packet until they are here or cannot come any more; a
 // newer scan waits meanwhile, and replaces one that waits already. It is processed in any case; without
-// joints the tracker says so. Thread rule: run() in a thread of its own. Latency: a result is announced at once.
+// joints the tracker says so. Thread rule: run() in a thread of its own. Latency: a result is announced at
+// once.
 #pragma once
 
 #include <memory>
