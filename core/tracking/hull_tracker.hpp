@@ -2,7 +2,7 @@
 //
 // Frames: scans in L, joints -> W, map in H; the answer is T_W_H. The pose is that of the middle of
 // the scan. Asks no clock and does no I/O; the same calls in the same order give the same bits.
-// Thread rule: one owner. Cost: bounded by the scan's points (see README.md of core).
+// Thread rule: one owner. Cost: bounded by the scan's points (core/README.md).
 #pragma once
 
 #include <cstdint>
