@@ -29,6 +29,11 @@ constexpr double kMostSeenThrough = 0.05;
 // Fewer confirmed surfels (16 m^2) are no ground for any statement.
 constexpr std::uint32_t kFewestConfirmed = 100;
 
+bool is_finite(const PlaneStep& step) {
+  return step.translation.allFinite() && step.rotation.allFinite() &&
+         step.covariance_translation.allFinite() && step.covariance_rotation.allFinite();
+}
+
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
@@ -37,6 +42,9 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 IntegrityFinding judge_step(const PlaneStep& step) {
   if (!step.solved) {
     return {fault::unconstrained, "the surfaces in view leave a direction free"};
+  }
+  if (!is_finite(step)) {  // NaN is neither above nor below a limit
+    return {fault::unconstrained, "the step that the scan asks for is no number"};
   }
   const double sigma_t = largest_sigma(step.covariance_translation);
   const double sigma_r = largest_sigma(step.covariance_rotation);

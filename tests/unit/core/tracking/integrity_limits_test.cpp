@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+
+#include "core/tracking/integrity.hpp"
+
+namespace hulltrack {
+namespace {
+
+using ::testing::HasSubstr;
+
+Eigen::Matrix3d variance(double sigma) { return sigma * sigma * Eigen::Matrix3d::Identity(); }
+
+/// A right pose, well seen: 95 % of each class confirmed, 1 cm and 0.03 deg sure, nothing to correct.
+IntegrityReport right_pose() {
+  IntegrityReport report;
+  report.surfaces.fill({400, 380});
+  report.expected = 1200;
+  report.confirmed = 1140;
+  report.seen_through = 12;
+  report.step.solved = true;
+  report.step.covariance_translation = variance(0.01);
+  report.step.covariance_rotation = variance(radians(0.03));
+  return report;
+}
+
+struct Case {
+  const char* name;
+  std::function<void(IntegrityReport&)> change;  // of a right pose's report
+  Faults faults;
+  const char* words;  // in the reason
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+class JudgeIntegrity : public testing::TestWithParam<Case> {};
+
+TEST_P(JudgeIntegrity, FindsIt) {
+  IntegrityReport report = right_pose();
+  GetParam().change(report);
+  const IntegrityFinding finding = judge_integrity(report);
+  EXPECT_EQ(finding.faults, GetParam().faults) << finding.reason;
+  EXPECT_EQ(finding.reason.empty(), finding.faults == 0) << finding.reason;
+  EXPECT_THAT(finding.reason, HasSubstr(GetParam().words));
+}
+
+constexpr std::size_t kTransverse = 0;
+constexpr std::size_t kLongitudinal = 1;
+constexpr std::size_t kHorizontal = 2;
+constexpr Faults kNone = 0;
+constexpr Faults kContradicted = fault::contradicted;
+constexpr Faults kUnconstrained = fault::unconstrained;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+using R = IntegrityReport;
+const Case kCases[] = {
+    {"RightPose", [](R&) {}, kNone, ""},
+
+    // By the step: what it says and twice its sigma must stay within 10 cm and 0.3 deg.
+    {"StepWithinTheBudget",
+     [](R& r) {
+       r.step.translation = {0.0, 0.079, 0.0};
+     },
+     kNone, ""},
+    {"StepBeyondTheBudget",
+     [](R& r) {
+       r.step.translation = {0.0, -0.081, 0.0};
+     },
+     kContradicted, "off by 0.000, -0.081, 0.000 m in x, y, z"},
+    {"StepBeyondTheBudgetAcrossAxes",
+     [](R& r) {
+       r.step.translation = {0.05, 0.05, 0.05};
+     },
+     kContradicted, "off by 0.050, 0.050, 0.050 m"},
+    {"SameStepLessSure",
+     [](R& r) {
+       r.step.translation = {0.0, 0.079, 0.0};
+       r.step.covariance_translation(2, 2) = 0.02 * 0.02;
+     },
+     kContradicted, "off by 0.000, 0.079, 0.000 m"},
+    {"TurnWithinTheBudget",
+     [](R& r) {
+       r.step.rotation = {0.0, 0.0, radians(0.23)};
+     },
+     kNone, ""},
+    {"TurnBeyondTheBudget",
+     [](R& r) {
+       r.step.rotation = {0.0, 0.0, radians(-0.25)};
+     },
+     kContradicted, "turned by 0.250 deg"},
+
+    // Unconstrained: by the geometry, or because too little is confirmed.
+    {"StepNotSolved", [](R& r) { r.step = PlaneStep{}; }, kUnconstrained, "leave a direction free"},
+    {"LessSureThanTranslationAllows", [](R& r) { r.step.covariance_translation(0, 0) = 0.038 * 0.038; },
+     kUnconstrained, "to 0.038 m"},
+    {"JustSureEnoughInTranslation", [](R& r) { r.step.covariance_translation(0, 0) = 0.037 * 0.037; }, kNone,
+     ""},
+    {"LessSureAlongADiagonal",
+     [](R& r) {  // 0.03 m in x and in y, fully correlated: 0.042 m along the diagonal
+       r.step.covariance_translation.topLeftCorner<2, 2>().setConstant(0.03 * 0.03);
+     },
+     kUnconstrained, "to 0.042 m"},
+    {"LessSureThanRotationAllows", [](R& r) { r.step.covariance_rotation = variance(radians(0.12)); },
+     kUnconstrained, "0.120 deg"},
+    {"TooFewConfirmed", [](R& r) { r.confirmed = 99; }, kUnconstrained,
+     "only 99 map surfaces are confirmed by the scan, 100 are needed"},
+    {"NothingSeen", [](R& r) { r = IntegrityReport{}; }, kUnconstrained, "only 0 map surfaces"},
+
+    // By the share of a class that is where the pose puts it.
+    {"HalfOfTheTransverseConfirmed",
+     [](R& r) {
+       r.surfaces[kTransverse] = {400, 200};
+     },
+     kNone, ""},
+    {"TransverseMissing",
+     [](R& r) {
+       r.surfaces[kTransverse] = {400, 48};
+     },
+     kContradicted, "only 12 % of 400 transverse surfaces"},
+    {"LongitudinalMissing",
+     [](R& r) {
+       r.surfaces[kLongitudinal] = {400, 199};
+     },
+     kContradicted, "400 longitudinal surfaces"},
+    {"HorizontalMissing",
+     [](R& r) {
+       r.surfaces[kHorizontal] = {20, 9};
+     },
+     kContradicted, "only 45 % of 20 horizontal surfaces"},
+    {"TooFewOfAClassSayNothing",
+     [](R& r) {
+       r.surfaces[kTransverse] = {19, 0};
+     },
+     kNone, ""},
+    {"ClassNotInViewSaysNothing",
+     [](R& r) {
+       r.surfaces[kTransverse] = {0, 0};
+     },
+     kNone, ""},
+
+    // By what the scan sees through.
+    {"FiveInAHundredSeenThrough", [](R& r) { r.seen_through = 60; }, kNone, ""},
+    {"MoreSeenThrough", [](R& r) { r.seen_through = 84; }, kContradicted, "sees through 7 % of the hull"},
+
+    // Findings add up; the first reason that contradicts is the one that is told.
+    {"ContradictedAndUnconstrained",
+     [](R& r) {
+       r.surfaces[kTransverse] = {400, 48};
+       r.step = PlaneStep{};
+     },
+     kContradicted | kUnconstrained, "transverse surfaces"},
+    {"ContradictedTwice",
+     [](R& r) {
+       r.seen_through = 120;
+       r.step.translation = {0.5, 0.0, 0.0};
+     },
+     kContradicted, "sees through 10 %"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Reports, JudgeIntegrity, testing::ValuesIn(kCases),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(JudgeIntegrityOfNan, FiguresThatAreNoNumbersAreNeverHealthy) {
+  const std::function<void(IntegrityReport&)> spoil[] = {
+      [](R& r) { r.step.translation.x() = kNan; },
+      [](R& r) { r.step.rotation.z() = kNan; },
+      [](R& r) { r.step.covariance_translation(0, 0) = kNan; },
+      [](R& r) { r.step.covariance_rotation(2, 2) = kNan; },
+      [](R& r) { r.step.covariance_translation.fill(kNan); },
+      [](R& r) { r.step.covariance_rotation.fill(kNan); },
+  };
+  for (std::size_t i = 0; i < std::size(spoil); ++i) {
+    IntegrityReport report = right_pose();
+    spoil[i](report);
+    EXPECT_NE(judge_integrity(report).faults, 0) << i;
+  }
+}
+
+}  // namespace
+}  // namespace hulltrack
