@@ -12,8 +12,9 @@
 
 namespace hulltrack {
 
-inline constexpr float kSurfelRadius = 0.3F;           // m
-inline constexpr std::size_t kSurfelNeighbours = 160;  // 113 points of a 5 cm map lie within the radius
+inline constexpr float kSurfelRadius = 0.3F;  // m
+/// Enough to reach the radius: 113 points of a 5 cm map lie within it, 707 of a 2 cm map.
+inline constexpr std::size_t kSurfelNeighbours = 1024;
 
 /// One surfel for each of `points_H`; `map` is the tree over `cloud_H`.
 [[nodiscard]] std::vector<Surfel> compute_surfels(const Cloud& points_H, const Cloud& cloud_H,
