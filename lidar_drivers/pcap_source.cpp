@@ -152,8 +152,8 @@ bool PcapSource::read_udp(Bytes ip_payload, std::uint32_t source_ip, Datagram& o
   return wanted;
 }
 
-std::string PcapSource::explain_nothing_found() const {
-  std::string text = name_ + ": no datagrams";
+std::string PcapSource::explain_nothing_found(const std::string& wanted) const {
+  std::string text = name_ + ": no datagrams" + wanted;
   if (filter_.port) text += " to UDP port " + std::to_string(*filter_.port);
   if (filter_.source_ip) text += " from " + format_ipv4(*filter_.source_ip);
   text += " among " + std::to_string(counters_.records) + " records";

@@ -60,8 +60,9 @@ class PcapSource {
   [[nodiscard]] Result<bool> next(Datagram& out);
 
   [[nodiscard]] const PcapCounters& counters() const { return counters_; }
-  /// After the end, when nothing was handed out: why not, naming the ports that were seen.
-  [[nodiscard]] std::string explain_nothing_found() const;
+  /// After the end, when nothing that was handed out was of use: why not, naming the ports that were seen.
+  /// `wanted`, such as " for any LiDAR", says what was looked for beyond the filter.
+  [[nodiscard]] std::string explain_nothing_found(const std::string& wanted = {}) const;
 
  private:
   struct Close {

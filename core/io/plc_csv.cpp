@@ -116,7 +116,7 @@ Result<std::vector<Row>> read_rows(const std::filesystem::path& file) {
     rows.push_back(row);
   }
   if (rows.empty()) {
-    return Error{file.string() + ": has a header but no rows"};
+    return Error{file.string() + ": has a header but no rows; record it again"};
   }
   return rows;
 }

@@ -6,10 +6,24 @@
 
 namespace hulltrack {
 
+Result<void> check_recording_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  if (!std::filesystem::is_directory(folder, failure)) {
+    return Error{folder.string() + ": is no folder; name the folder that holds lidar.pcap and plc.csv"};
+  }
+  for (const char* name : {"lidar.pcap", "plc.csv"}) {
+    if (!std::filesystem::exists(folder / name, failure)) {
+      return Error{(folder / name).string() +
+                   ": is missing; a recording folder holds lidar.pcap and plc.csv"};
+    }
+  }
+  return {};
+}
+
 Result<std::unique_ptr<RecordingPlayer>> RecordingPlayer::open(const std::filesystem::path& folder,
                                                                const Config& config) {
-  if (!std::filesystem::is_directory(folder)) {
-    return Error{folder.string() + ": not a recording folder (it holds lidar.pcap and plc.csv)"};
+  if (const Result<void> complete = check_recording_folder(folder); !complete) {
+    return complete.error();
   }
   Result<std::vector<PlcCsvRow>> rows = read_plc_csv(folder / "plc.csv");
   if (!rows) {
@@ -36,6 +50,7 @@ RecordingPlayer::RecordingPlayer(const std::filesystem::path& folder, const Conf
                                  PcapSource&& source, DatagramRouter&& router, ScanBuilder&& builder,
                                  std::vector<PlcCsvRow>&& rows)
     : pcap_name_((folder / "lidar.pcap").string()),
+      lidars_(config.lidars),
       plc_(config.plc),
       source_(std::move(source)),
       router_(std::move(router)),
@@ -70,8 +85,8 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
     }
     if (!*more) {
       at_end_ = true;
-      if (datagrams_ == 0) {
-        return Error{pcap_name_ + ": no datagram for any [[lidar]]; " + source_.explain_nothing_found()};
+      if (std::string nothing = explain_no_frame(); !nothing.empty()) {
+        return Error{std::move(nothing)};
       }
       builder_.finish();
       continue;
@@ -82,6 +97,32 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
     }
   }
   return true;
+}
+
+/// Why the capture, read to its end, holds no frame at all; empty if it does.
+std::string RecordingPlayer::explain_no_frame() const {
+  if (datagrams_ == 0) {
+    std::string ports;
+    for (const LidarConfig& lidar : lidars_) {
+      ports += (ports.empty() ? "" : ", ") + std::to_string(lidar.port);
+      ports += lidar.source.empty() ? "" : " from " + lidar.source;
+    }
+    return source_.explain_nothing_found(" for any [[lidar]] (UDP port " + ports + ")") +
+           "; correct its port or source, or record the network interface that the LiDAR is on";
+  }
+  for (std::size_t i = 0; i < lidars_.size(); ++i) {
+    if (builder_.status(i).packets > 0) {
+      return {};
+    }
+  }
+  for (std::size_t i = 0; i < lidars_.size(); ++i) {
+    if (const LidarStatus status = builder_.status(i); status.packets_rejected > 0) {
+      return pcap_name_ + ": none of " + std::to_string(status.packets_rejected) +
+             " datagrams is of lidar \"" + lidars_[i].name + "\", a " + lidars_[i].model + ": " +
+             status.last_rejection + "; correct its model or port";
+    }
+  }
+  return {};
 }
 
 void RecordingPlayer::play_plc_until(MeasurementTime last_firing) {

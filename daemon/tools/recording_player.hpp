@@ -23,6 +23,9 @@
 
 namespace hulltrack {
 
+/// Whether `folder` holds what a recording is made of; an error says what is missing.
+[[nodiscard]] Result<void> check_recording_folder(const std::filesystem::path& folder);
+
 class RecordingPlayer {
  public:
   /// `config` is copied as far as it is needed.
@@ -43,16 +46,18 @@ class RecordingPlayer {
   RecordingPlayer(const std::filesystem::path& folder, const Config& config, PcapSource&& source,
                   DatagramRouter&& router, ScanBuilder&& builder, std::vector<PlcCsvRow>&& rows);
   [[nodiscard]] Result<bool> read_until_frame(Scan& scan);
+  [[nodiscard]] std::string explain_no_frame() const;
   void play_plc_until(MeasurementTime last_firing);
   void play_row(const PlcCsvRow& row);
 
   std::string pcap_name_;
+  std::vector<LidarConfig> lidars_;
   PlcConfig plc_;
   PcapSource source_;
   DatagramRouter router_;
   ScanBuilder builder_;
   bool at_end_ = false;
-  std::uint64_t datagrams_ = 0;
+  std::uint64_t datagrams_ = 0;  // for one of the LiDARs
 
   std::vector<PlcCsvRow> rows_;
   std::size_t next_row_ = 0;

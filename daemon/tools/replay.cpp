@@ -75,6 +75,9 @@ Config load_config(const ReplayOptions& options) {
   const std::filesystem::path file = options.config.empty()
                                          ? std::filesystem::path(options.folder) / "hulltrackd.toml"
                                          : std::filesystem::path(options.config);
+  if (options.config.empty() && !std::filesystem::exists(file)) {
+    throw ToolError(file.string() + ": is missing; name the configuration with --config");
+  }
   std::vector<std::string> models;
   for (const LidarModel& model : lidar_models()) {
     models.emplace_back(model.name);
@@ -97,6 +100,7 @@ std::vector<TruthRow> load_truth(const std::filesystem::path& folder) {
 }
 
 void replay(const ReplayOptions& options) {
+  must(check_recording_folder(options.folder));
   const Config config = load_config(options);
   std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
   ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
@@ -132,7 +136,7 @@ void replay(const ReplayOptions& options) {
   if (csv) {
     must(csv->close());
   }
-  if (!options.quiet) {
+  if (!options.quiet && !summary.empty()) {
     std::fputs(summary.text(!options.no_timing).c_str(), stderr);
   }
   if (!broken_off.empty()) {

@@ -97,7 +97,7 @@ void ReplaySummary::add(const TrackResult& r, double processing_ms) {
 }
 
 std::string ReplaySummary::text(bool with_timing) const {
-  if (frames_.empty()) {
+  if (empty()) {
     return "no frames\n";
   }
   std::string text = states_text() + figures_text(with_timing);

@@ -28,6 +28,7 @@ class ReplaySummary {
   ReplaySummary(std::vector<TruthRow> truth, double max_speed);
 
   void add(const TrackResult& result, double processing_ms);
+  [[nodiscard]] bool empty() const { return frames_.empty(); }
 
   /// Lines for the terminal. `with_timing` false leaves the processing times out.
   [[nodiscard]] std::string text(bool with_timing) const;
