@@ -1,6 +1,7 @@
 #include "core/tracking/hull_tracker.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -15,8 +16,6 @@
 
 namespace hulltrack {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 IcpConfig icp_config(const RegistrationConfig& c) {
   return {c.max_correspondence_distance, c.max_iterations, c.translation_epsilon, c.rotation_epsilon};
@@ -48,6 +47,8 @@ struct HullTracker::Impl {
   Cloud thinned_W;
   std::vector<ScanView> views;
   std::vector<VisiblePoint> visible;
+  Cloud measured_W;  // the metrics' map points, and what is nearest to each
+  std::vector<Neighbour> nearest;
   std::vector<double> distances;
 
   Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
@@ -151,25 +152,27 @@ void HullTracker::Impl::look(const Joints& joints_mid) {
 DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H, const KdTree& scan_W) {
   const Eigen::Matrix3f R = T_W_H.linear().cast<float>();
   const Point t = T_W_H.translation().cast<float>();
-  distances.clear();
-  const auto add = [&](const Point& p_H) {
-    if (const auto nearest = scan_W.nearest(R * p_H + t, static_cast<float>(kInfinity))) {
-      distances.push_back(std::sqrt(static_cast<double>(nearest->squared_distance)));
-    }
-  };
+  measured_W.clear();
+  const auto add = [&](const Point& p_H) { measured_W.push_back(R * p_H + t); };
   const bool full = config.metrics_scope == MetricsScope::visible_full;
   if (config.metrics_scope == MetricsScope::whole_map) {
-    for (const Point& p_H : map->cloud_H()) {
-      add(p_H);
+    std::for_each(map->cloud_H().begin(), map->cloud_H().end(), add);
+  } else {
+    if (full) {
+      visibility.run(*map, map->cloud_H(), T_W_H, views, scan_filter.sensors(), visible);
     }
-    return summarise_distances(distances);
+    const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
+    for (const VisiblePoint& point : visible) {
+      add(candidates_H[point.index]);
+    }
   }
-  if (full) {
-    visibility.run(*map, map->cloud_H(), T_W_H, views, scan_filter.sensors(), visible);
-  }
-  const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
-  for (const VisiblePoint& point : visible) {
-    add(candidates_H[point.index]);
+  nearest.resize(measured_W.size());
+  scan_W.nearest(measured_W, std::numeric_limits<float>::infinity(), nearest);
+  distances.clear();
+  for (const Neighbour& neighbour : nearest) {
+    if (neighbour.index != Neighbour::kNone) {
+      distances.push_back(std::sqrt(static_cast<double>(neighbour.squared_distance)));
+    }
   }
   return summarise_distances(distances);
 }

@@ -7,6 +7,7 @@ namespace hulltrack {
 namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+constexpr float kNothing = std::numeric_limits<float>::infinity();
 constexpr float kFrontMost = 0.4F;  // m (ICD 3)
 // A voxel's representative hides a disc as wide as the voxel; no more cells than this at point-blank range.
 constexpr int kLargestSplat = 5;
@@ -48,22 +49,34 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
 
 void Visibility::render(std::span<const Point> occluders_H, const Eigen::Matrix3f& R_L_H, const Point& t_L_H,
                         float range) {
-  map_nearest_.assign(SphericalGrid::kCells, std::numeric_limits<float>::infinity());
+  cell_nearest_.assign(SphericalGrid::kCells, kNothing);
   for (const Point& p_H : occluders_H) {
     const Point p_L = R_L_H * p_H + t_L_H;
     const float r2 = p_L.squaredNorm();
-    if (r2 > range * range) {
-      continue;
+    if (r2 <= range * range) {
+      float& nearest2 = cell_nearest_[SphericalGrid::cell(p_L).index()];
+      nearest2 = std::min(nearest2, r2);
     }
-    const float r = std::sqrt(r2);
-    const SphericalGrid::Cell cell = SphericalGrid::cell(p_L);
-    const float cells_wide = HullMap::kOccluderVoxel / (std::max(r, HullMap::kOccluderVoxel) * kDegree);
-    const int splat = std::min(static_cast<int>(cells_wide / 2.0F), kLargestSplat);
-    for (int dr = -splat; dr <= splat; ++dr) {
-      for (int dc = -splat; dc <= splat; ++dc) {
-        float& nearest = map_nearest_[cell.moved(dr, dc).index()];
-        nearest = std::min(nearest, r);
+  }
+  // The nearest occluder of a cell covers the most: the others behind it hide nothing besides.
+  map_nearest_.assign(SphericalGrid::kCells, kNothing);
+  for (int row = 0; row < SphericalGrid::kRows; ++row) {
+    for (int column = 0; column < SphericalGrid::kColumns; ++column) {
+      const SphericalGrid::Cell cell{row, column};
+      if (cell_nearest_[cell.index()] != kNothing) {
+        splat(cell, std::sqrt(cell_nearest_[cell.index()]));
       }
+    }
+  }
+}
+
+void Visibility::splat(SphericalGrid::Cell cell, float r) {
+  const float cells_wide = HullMap::kOccluderVoxel / (std::max(r, HullMap::kOccluderVoxel) * kDegree);
+  const int reach = std::min(static_cast<int>(cells_wide / 2.0F), kLargestSplat);
+  for (int dr = -reach; dr <= reach; ++dr) {
+    for (int dc = -reach; dc <= reach; ++dc) {
+      float& nearest = map_nearest_[cell.moved(dr, dc).index()];
+      nearest = std::min(nearest, r);
     }
   }
 }

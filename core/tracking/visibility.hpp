@@ -36,10 +36,12 @@ class Visibility {
  private:
   void render(std::span<const Point> occluders_H, const Eigen::Matrix3f& R_L_H, const Point& t_L_H,
               float range);
+  void splat(SphericalGrid::Cell cell, float r);
 
   double metric_range_;
-  std::vector<float> map_nearest_;  // per cell, m
-  std::vector<bool> seen_;          // per candidate, by an earlier LiDAR
+  std::vector<float> cell_nearest_;  // per cell: of the occluders in it, squared, m^2
+  std::vector<float> map_nearest_;   // per cell: of the occluders that cover it, m
+  std::vector<bool> seen_;           // per candidate, by an earlier LiDAR
 };
 
 }  // namespace hulltrack
