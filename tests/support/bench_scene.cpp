@@ -158,6 +158,20 @@ Cloud survey(const Boxes& hull, float spacing, std::mt19937& rng) {
   return map;
 }
 
+RayHit first_hit(const Boxes& hull, const Boxes& clutter, const Point& from, const Point& direction) {
+  const Eigen::Array3f inverse_direction = inverse(direction);
+  RayHit first{std::numeric_limits<float>::infinity(), false};
+  for (const Boxes* boxes : {&hull, &clutter}) {
+    for (const Box& box : *boxes) {
+      const std::optional<float> distance = hit(box, from, inverse_direction);
+      if (distance && *distance < first.range) {
+        first = {*distance, boxes == &hull};
+      }
+    }
+  }
+  return first;
+}
+
 SceneScan scan_from(const Boxes& hull, Boxes clutter, const Point& sensor, std::mt19937& rng) {
   // The chute hangs below the sensor.
   clutter.push_back({sensor - Point(0.6F, -1.5F, 14.0F), sensor - Point(-0.6F, -2.7F, 1.0F)});
@@ -171,18 +185,7 @@ SceneScan scan_from(const Boxes& hull, Boxes clutter, const Point& sensor, std::
       const Point direction = Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
                                               std::cos(elevation) * std::sin(azimuth), std::sin(elevation))
                                   .cast<float>();
-      const Eigen::Array3f inverse_direction = inverse(direction);
-      float range = std::numeric_limits<float>::infinity();
-      bool on_hull = false;
-      for (const Boxes* boxes : {&hull, static_cast<const Boxes*>(&clutter)}) {
-        for (const Box& box : *boxes) {
-          const std::optional<float> distance = hit(box, sensor, inverse_direction);
-          if (distance && *distance < range) {
-            range = *distance;
-            on_hull = boxes == &hull;
-          }
-        }
-      }
+      auto [range, on_hull] = first_hit(hull, clutter, sensor, direction);
       if (u(rng) < 0.02F) {  // dust near the chute
         range = std::min(range, 2.0F + 10.0F * u(rng));
         on_hull = false;
@@ -208,6 +211,12 @@ Scene make_scene(double spacing, std::size_t scans, std::uint32_t seed) {
     scene.scans.push_back(scan_from(hull, clutter, sensor, rng));
   }
   return scene;
+}
+
+RayTarget::RayTarget() : hull_(make_hull()), clutter_(make_clutter()) {}
+
+RayHit RayTarget::cast(const Point& from, const Point& direction) const {
+  return first_hit(hull_, clutter_, from, direction);
 }
 
 Pose start_pose(double translation, double angle, std::uint32_t seed) {

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/box.hpp"
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/se3.hpp"
 
@@ -27,6 +28,24 @@ struct Scene {
 
 /// `spacing` of the map, m; `scans` scans of 65,536 rays each from positions along the ship.
 [[nodiscard]] Scene make_scene(double spacing, std::size_t scans, std::uint32_t seed);
+
+/// What a ray meets first.
+struct RayHit {
+  float range;  // m; infinity where there is nothing
+  bool on_hull;
+};
+
+/// The scene's hull and clutter (without dust and chute) for rays of the caller's choice.
+class RayTarget {
+ public:
+  RayTarget();
+  /// `direction` is a unit vector. Of near faces only: a ray that starts inside a box does not meet it.
+  [[nodiscard]] RayHit cast(const Point& from, const Point& direction) const;
+
+ private:
+  std::vector<Box> hull_;
+  std::vector<Box> clutter_;
+};
 
 /// A start pose that is wrong by `translation` (m) at the ship's middle and by `angle` (rad), in random
 /// directions.

@@ -1,0 +1,36 @@
+// Some seconds of a loader at work over the bench scene's ship, as datagrams: the whole frame's case.
+//
+// One spinning LiDAR of 32 lasers hangs askew under the travelling boom, so that the half of its rays that
+// points down meets decks, holds, quay and dust. It turns five times a second and a frame is a turn: about
+// 65,000 points. The hull is off its map by T_W_H. Frames as in the project; metres, rad.
+// Deterministic for a seed. Cost: a tenth of a second a frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/kinematics/joint_history.hpp"
+#include "lidar_drivers/lidar_config.hpp"
+#include "lidar_drivers/velodyne/velodyne_format.hpp"
+
+namespace hulltrack::bench {
+
+struct RecordedDatagram {
+  MeasurementTime received;
+  std::array<std::uint8_t, velodyne::kPacketBytes> bytes;
+};
+
+struct FrameRecording {
+  LidarConfig lidar;
+  FramingConfig framing;
+  Pose T_W_H;
+  JointHistory joints;  // all of them
+  std::vector<RecordedDatagram> datagrams;
+  double clutter = 0.0;  // share of the returns that are not hull, dust included
+};
+
+/// Enough datagrams for `frames` whole frames.
+[[nodiscard]] FrameRecording record_frames(int frames, std::uint32_t seed);
+
+}  // namespace hulltrack::bench
