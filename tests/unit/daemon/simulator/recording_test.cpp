@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
+#include <algorithm>
+#include <filesystem>
 
 #include "core/io/map_file.hpp"
 #include "daemon/config/read_config.hpp"
@@ -13,6 +11,7 @@
 #include "lidar_drivers/model_registry.hpp"
 #include "lidar_drivers/pcap_source.hpp"
 #include "lidar_drivers/scan_builder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace hulltrack {
 namespace {
@@ -27,26 +26,15 @@ std::vector<std::string> model_names() {
   return names;
 }
 
-/// A folder of its own, gone afterwards.
 class Recording : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "hulltrack-recording-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static std::unique_ptr<SimulatedBerth> berth(std::uint64_t seed, int frames) {
     return std::move(SimulatedBerth::create({.seed = seed, .frames = frames})).value();
   }
-  static std::string bytes(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   static bool on(double) { return true; }
 
-  fs::path folder_;
+  const test::TempFolder temp_;
+  const fs::path& folder_ = temp_.path();
 };
 
 TEST_F(Recording, SameSeedSameBytesAndItsReplayHasItsFrames) {
@@ -56,8 +44,8 @@ TEST_F(Recording, SameSeedSameBytesAndItsReplayHasItsFrames) {
   ASSERT_TRUE(write_recording(*berth(21, kFrames), one, false, on).ok());
   ASSERT_TRUE(write_recording(*berth(21, kFrames), two, false, on).ok());
   for (const char* name : kFiles) {
-    EXPECT_FALSE(bytes(one / name).empty()) << name;
-    EXPECT_TRUE(bytes(one / name) == bytes(two / name)) << name << " differs";
+    EXPECT_FALSE(test::read_text(one / name).empty()) << name;
+    EXPECT_TRUE(test::read_text(one / name) == test::read_text(two / name)) << name << " differs";
   }
 
   const ConfigReading reading = read_config(one / "hulltrackd.toml", model_names());
@@ -127,7 +115,7 @@ TEST_F(Recording, InterruptedRunLeavesNothing) {
 }
 
 TEST_F(Recording, AFolderThatHoldsSomethingIsKept) {
-  std::ofstream(folder_ / "precious.txt") << "keep";
+  temp_.file("precious.txt", "keep");
   const auto done = write_recording(*berth(1, 1), folder_, false, on);
   ASSERT_FALSE(done.ok());
   EXPECT_NE(done.error().message.find("--force"), std::string::npos);
