@@ -4,12 +4,8 @@
 #pragma once
 
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,22 +13,6 @@
 #include "core/base/result.hpp"
 
 namespace hulltrack {
-
-/// The whole field as a number of type T; nothing for rubbish, overflow, NaN or infinity.
-template <typename T>
-[[nodiscard]] std::optional<T> parse_number(std::string_view field) {
-  T value{};
-  const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (failure != std::errc{} || end != field.data() + field.size()) {
-    return std::nullopt;
-  }
-  if constexpr (std::is_floating_point_v<T>) {
-    if (!std::isfinite(value)) {
-      return std::nullopt;
-    }
-  }
-  return value;
-}
 
 class CsvLines {
  public:

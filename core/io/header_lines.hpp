@@ -4,9 +4,11 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
+#include <string>
 #include <string_view>
+
+#include "core/base/result.hpp"
 
 namespace hulltrack {
 
@@ -34,6 +36,10 @@ class HeaderLines {
   [[nodiscard]] std::string_view rest() const { return rest_; }
   /// Lines taken; 1-based number of the last one.
   [[nodiscard]] int count() const { return count_; }
+  /// "line N: message" about the line taken last.
+  [[nodiscard]] Error error(const std::string& message) const {
+    return Error{"line " + std::to_string(count_) + ": " + message};
+  }
 
  private:
   std::string_view rest_;
@@ -47,14 +53,6 @@ class HeaderLines {
   const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
   line.remove_prefix(word.size());
   return word;
-}
-
-/// A coordinate in text; "nan" and "inf" are numbers here. False for anything else.
-[[nodiscard]] inline bool parse_coordinate(std::string_view word, float& value) {
-  double number = 0.0;  // as double: text beyond float's range becomes infinite, which the caller drops
-  const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), number);
-  value = static_cast<float>(number);
-  return failure == std::errc{} && end == word.data() + word.size();
 }
 
 }  // namespace hulltrack

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/io/csv_lines.hpp"
+#include "core/io/parse_number.hpp"
 
 namespace hulltrack {
 namespace {

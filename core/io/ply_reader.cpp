@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/csv_lines.hpp"
+#include "core/io/cloud_body.hpp"
 #include "core/io/header_lines.hpp"
-#include "core/io/map_file.hpp"
+#include "core/io/parse_number.hpp"
 
 namespace hulltrack {
 namespace {
@@ -26,8 +26,8 @@ struct Property {
 struct Header {
   enum class Format { none, ascii, little, big } format = Format::none;
   std::size_t points = 0;
-  std::vector<Property> properties;   // of a vertex
-  std::array<std::size_t, 3> axes{};  // indices of x, y, z
+  std::vector<Property> properties;  // of a vertex
+  AxisWords axes{};                  // indices of x, y, z
   [[nodiscard]] std::size_t record() const { return properties.back().offset + properties.back().size; }
 };
 
@@ -72,7 +72,7 @@ class HeaderParser {
         return finish();
       }
       if (const std::string problem = take(*line); !problem.empty()) {
-        return Error{"line " + std::to_string(lines_.count()) + ": " + problem};
+        return lines_.error(problem);
       }
     }
   }
@@ -151,12 +151,8 @@ class HeaderParser {
       }
       header_.axes[axis] = static_cast<std::size_t>(found - all.begin());
     }
-    if (header_.points == 0) {
-      return Error{"has no points; make the map again"};
-    }
-    if (header_.points > kMaxMapPoints) {
-      return Error{"its header says " + std::to_string(header_.points) + " points, at most " +
-                   std::to_string(kMaxMapPoints) + " are allowed; thin the map out (5 cm voxels are enough)"};
+    if (const auto sane = check_point_count(header_.points); !sane) {
+      return sane.error();
     }
     return header_;
   }
@@ -180,9 +176,8 @@ float load(const char* bytes, bool swap) {
 
 Result<Cloud> parse_binary(const Header& header, std::string_view body) {
   const std::size_t record = header.record();
-  if (body.size() < header.points * record) {
-    return Error{"is cut short: its header promises " + std::to_string(header.points * record) +
-                 " bytes of points, " + std::to_string(body.size()) + " are there; copy the file again"};
+  if (const auto whole = check_body_size(header.points * record, body.size()); !whole) {
+    return whole.error();
   }
   const bool swap = header.format == Header::Format::big;
   Cloud cloud(header.points);
@@ -192,32 +187,6 @@ Result<Cloud> parse_binary(const Header& header, std::string_view body) {
       const char* bytes = body.data() + i * record + property.offset;
       cloud[i][axis] = property.size == 8 ? load<double>(bytes, swap) : load<float>(bytes, swap);
     }
-  }
-  return cloud;
-}
-
-Result<Cloud> parse_ascii(const Header& header, HeaderLines& lines) {
-  Cloud cloud;
-  const std::size_t shortest = 2 * header.properties.size();  // a digit and a blank each
-  cloud.reserve(std::min(header.points, lines.rest().size() / shortest + 1));
-  while (cloud.size() < header.points) {
-    auto line = lines.next();
-    if (!line) {
-      return Error{"is cut short: its header promises " + std::to_string(header.points) + " points, " +
-                   std::to_string(cloud.size()) + " are there; copy the file again"};
-    }
-    Point point = Point::Zero();
-    for (std::size_t word = 0; word < header.properties.size(); ++word) {
-      const std::string_view text = take_word(*line);
-      for (int axis = 0; axis < 3; ++axis) {
-        const bool mine = header.axes[static_cast<std::size_t>(axis)] == word;
-        if (text.empty() || (mine && !parse_coordinate(text, point[axis]))) {
-          return Error{"line " + std::to_string(lines.count()) + ": value " + std::to_string(word + 1) +
-                       " is `" + std::string(text.substr(0, 40)) + "`, must be a number"};
-        }
-      }
-    }
-    cloud.push_back(point);
   }
   return cloud;
 }
@@ -232,8 +201,9 @@ Result<Cloud> parse_ply(std::string_view bytes) {
   if (!header) {
     return header.error();
   }
-  return header->format == Header::Format::ascii ? parse_ascii(*header, lines)
-                                                 : parse_binary(*header, lines.rest());
+  return header->format == Header::Format::ascii
+             ? parse_ascii_body(lines, header->points, header->properties.size(), header->axes)
+             : parse_binary(*header, lines.rest());
 }
 
 }  // namespace hulltrack
