@@ -1,11 +1,12 @@
-// `udp_replay CAPTURE FROM_PORT TO_PORT LOG`: sends the datagrams of a capture to 127.0.0.1 in real time.
+// `udp_replay CAPTURE LOG FROM:TO...`: sends the datagrams of a capture to 127.0.0.1 in real time, those that
+// went to port FROM to port TO; others are left out.
 // Prints `first T`, the capture's stamp of the first one, and sends that at CLOCK_MONOTONIC = NS once
 // standard input says `start NS`. LOG gets `capture_ns,sent_ns` a datagram: when it was captured (UTC), and
 // when it really left (CLOCK_MONOTONIC).
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
+#include <map>
 #include <string>
 #include <thread>
 
@@ -25,16 +26,25 @@ std::chrono::nanoseconds read_start() {
   return std::chrono::nanoseconds(ns);
 }
 
-int replay(PcapSource& source, std::uint16_t to_port, std::FILE* log) {
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  sockaddr_in to = loopback_address(to_port);
-  Datagram datagram;
+using PortMap = std::map<std::uint16_t, std::uint16_t>;  // destination in the capture -> on this host
+
+/// The next datagram to a port that is mapped.
+Result<bool> next_mapped(PcapSource& source, const PortMap& ports, Datagram& datagram) {
   Result<bool> more = source.next(datagram);
+  while (more && *more && !ports.contains(datagram.destination_port)) more = source.next(datagram);
+  return more;
+}
+
+int replay(PcapSource& source, const PortMap& ports, std::FILE* log) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  Datagram datagram;
+  Result<bool> more = next_mapped(source, ports, datagram);
   const MeasurementTime first = datagram.received;
   std::printf("first %lld\n", static_cast<long long>(to_ns(first)));
   std::fflush(stdout);
   const std::chrono::nanoseconds start = read_start();
-  for (; more && *more; more = source.next(datagram)) {
+  for (; more && *more; more = next_mapped(source, ports, datagram)) {
+    sockaddr_in to = loopback_address(ports.at(datagram.destination_port));
     const std::chrono::nanoseconds due = start + (datagram.received - first);
     std::this_thread::sleep_until(std::chrono::steady_clock::time_point(due));
     static_cast<void>(
@@ -51,18 +61,25 @@ int replay(PcapSource& source, std::uint16_t to_port, std::FILE* log) {
 
 int main(int argc, char** argv) {
   using namespace hulltrack;
-  if (argc != 5) {
-    std::fprintf(stderr, "usage: udp_replay CAPTURE FROM_PORT TO_PORT LOG\n");
+  if (argc < 4) {
+    std::fprintf(stderr, "usage: udp_replay CAPTURE LOG FROM:TO...\n");
     return 2;
   }
-  auto source = PcapSource::open(argv[1], {static_cast<std::uint16_t>(std::atoi(argv[2])), std::nullopt});
-  std::FILE* log = std::fopen(argv[4], "w");
+  PortMap ports;
+  for (int i = 3; i < argc; ++i) {
+    const std::string pair = argv[i];
+    const std::size_t colon = pair.find(':');
+    ports[static_cast<std::uint16_t>(std::stoi(pair))] =
+        static_cast<std::uint16_t>(std::stoi(pair.substr(colon + 1)));
+  }
+  auto source = PcapSource::open(argv[1]);
+  std::FILE* log = std::fopen(argv[2], "w");
   if (!source || log == nullptr) {
     std::fprintf(stderr, "udp_replay: %s\n",
                  source ? "cannot write the log" : source.error().message.c_str());
     return 1;
   }
-  const int code = replay(*source, static_cast<std::uint16_t>(std::atoi(argv[3])), log);
+  const int code = replay(*source, ports, log);
   std::fclose(log);
   return code;
 }

@@ -1,8 +1,8 @@
 """The live service gives the poses of `hulltrack replay`: the same recording through registers and files.
 
 A recording of the simulator is sent over loopback in real time: its datagrams by udp_replay, its joints by a
-PLC that is not libmodbus, to hulltrackd as a process. The poses in the registers must equal those of
-`hulltrack replay`, frame by frame. Timing is reported, not judged: frames whose packets this machine sent
+PLC that is not libmodbus, to hulltrackd as a process. Several --lidar are on one boom, each with a port of its
+own. The poses in the registers must equal those of `hulltrack replay`, frame by frame. Timing is reported, not judged: frames whose packets this machine sent
 late have other joints than the recording, so they are left out, and a machine too busy to send enough of
 them in time skips the test (77).
 """
@@ -19,6 +19,7 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "support"))
+from merged_recording import FIRST_PORT, merge  # noqa: E402
 from service_process import PATIENCE_S, Plc, Process, Service, free_port  # noqa: E402
 
 FRAME_NS = 100_000_000
@@ -38,10 +39,23 @@ def arguments():
     parser.add_argument("--hulltrack", required=True)
     parser.add_argument("--hulltrackd", required=True)
     parser.add_argument("--udp-replay", required=True)
-    parser.add_argument("--lidar", default="velodyne_vlp16")
+    parser.add_argument("--lidar", nargs="+", default=["velodyne_vlp16"], help="one or more models")
     parser.add_argument("--frames", type=int, default=150)
     parser.add_argument("--seed", type=int, default=1)
     return parser.parse_args()
+
+
+def simulate(args, folder):
+    """The recording of all LiDARs."""
+    recordings = []
+    for i, model in enumerate(args.lidar):
+        recordings.append(folder / f"recording{i}")
+        subprocess.run([args.hulltrack, "simulate", "--scenario", "berth", "--frames", str(args.frames), "--seed",
+                        str(args.seed), "--lidar", model, "--out", recordings[-1]], check=True, capture_output=True)
+    if len(recordings) == 1:
+        return recordings[0]
+    merge(recordings, folder / "merged")
+    return folder / "merged"
 
 
 def replayed_poses(hulltrack, recording):
@@ -52,10 +66,11 @@ def replayed_poses(hulltrack, recording):
         return {int(row["frame"]): row for row in csv.DictReader(file)}
 
 
-def live_config(recording, plc_port, lidar_port):
+def live_config(recording, plc_port, lidar_ports):
     text = (recording / "hulltrackd.toml").read_text(encoding="utf-8")
     text = re.sub(r"port = 1502", f"port = {plc_port}", text)
-    text = re.sub(r"port = 2368", f'port = {lidar_port}\nbind = "127.0.0.1"', text)
+    for i, port in enumerate(lidar_ports):
+        text = re.sub(rf"port = {FIRST_PORT + i}\n", f'port = {port}\nbind = "127.0.0.1"\n', text)
     path = recording / "live.toml"
     path.write_text(text, encoding="utf-8")
     return path
@@ -63,12 +78,13 @@ def live_config(recording, plc_port, lidar_port):
 
 def run_live(args, recording):
     """The PLC's log of writes and the sender's log of (capture_ns, sent_ns)."""
-    lidar_port = free_port(socket.SOCK_DGRAM)
+    lidar_ports = [free_port(socket.SOCK_DGRAM) for _ in args.lidar]
     sent_log = recording / "sent.csv"
-    sender = Process([args.udp_replay, recording / "lidar.pcap", 2368, lidar_port, sent_log])
+    sender = Process([args.udp_replay, recording / "lidar.pcap", sent_log,
+                      *(f"{FIRST_PORT + i}:{port}" for i, port in enumerate(lidar_ports))])
     first_ns = int(sender.out.find(lambda line: line.startswith("first "), "with the first stamp").split()[1])
     plc = Plc("--joints-csv", recording / "plc.csv", "--epoch-ns", str(first_ns), "--cycle-ms", "0")
-    service = Service(args.hulltrackd, live_config(recording, plc.port, lidar_port), recording)
+    service = Service(args.hulltrackd, live_config(recording, plc.port, lidar_ports), recording)
     try:
         service.wait_ready()
         start_ns = time.monotonic_ns() + 500_000_000
@@ -113,7 +129,7 @@ def compare(writes, replayed, late):
     return published, metres, degrees
 
 
-def report_timing(writes, completed):
+def report_timing(writes, completed, replayed):
     first_write = {}
     for write in writes:
         if write["health"] == 1:
@@ -121,6 +137,10 @@ def report_timing(writes, completed):
     latencies = [(write["mono_ns"] - completed[number]) * 1e-6
                  for number, write in first_write.items() if number in completed]
     gaps = [(b["mono_ns"] - a["mono_ns"]) * 1e-6 for a, b in zip(writes, writes[1:])]
+    processing = [write["processing_ms"] for write in first_write.values()]
+    alone = [float(row["ms"]) for row in replayed.values() if row["ms"]]
+    print(f"last packet received to registers ready: median {statistics.median(processing):.1f} ms, of which the "
+          f"wait for the joints and the tracking; the tracking takes {statistics.median(alone):.1f} ms in replay")
     print(f"last packet sent to registers written: median {statistics.median(latencies):.1f} ms, "
           f"worst {max(latencies):.1f} ms over {len(latencies)} frames")
     print(f"gap between writes: median {statistics.median(gaps):.1f} ms, worst {max(gaps):.1f} ms")
@@ -129,10 +149,7 @@ def report_timing(writes, completed):
 def main():
     args = arguments()
     with tempfile.TemporaryDirectory() as folder:
-        recording = pathlib.Path(folder) / "recording"
-        subprocess.run([args.hulltrack, "simulate", "--scenario", "berth", "--frames", str(args.frames), "--seed",
-                        str(args.seed), "--lidar", args.lidar, "--out", recording], check=True,
-                       capture_output=True)
+        recording = simulate(args, pathlib.Path(folder))
         replayed = replayed_poses(args.hulltrack, recording)
         writes, sent, log = run_live(args, recording)
     late, completed = frames_of(sent)
@@ -149,7 +166,7 @@ def main():
         print(f"too few frames were sent in time to compare (lateness {statistics.median(late.values()) * 1e-6:.1f} ms "
               "in the median): skipped")
         return 77
-    report_timing(writes, completed)
+    report_timing(writes, completed, replayed)
     print(f"live against replay: {1e3 * statistics.median(metres):.2f} mm in the median, {1e3 * max(metres):.2f} mm "
           f"at most; {max(degrees):.4f} deg at most")
     assert max(metres) <= LIMIT_M and max(degrees) <= LIMIT_DEG, "live and replay differ"
