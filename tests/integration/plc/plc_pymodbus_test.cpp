@@ -5,52 +5,17 @@
 
 #include "tests/integration/plc/plc_bench_setup.hpp"
 #include "tests/support/pymodbus_peer.hpp"
+#include "tests/support/register_vectors.hpp"
 
 namespace hulltrack {
 namespace {
 
 constexpr double kTravel = 123.456, kSlew = -30.125, kLuff = 7.25;
 
-struct Case {
-  WordOrder order;
-  const char* name;
-};
-constexpr std::array kOrders{Case{WordOrder::abcd, "ABCD"}, Case{WordOrder::cdab, "CDAB"},
-                             Case{WordOrder::badc, "BADC"}, Case{WordOrder::dcba, "DCBA"}};
-
-WriteBlock sample_block() {
-  return {.health = true,
-          .state = State::tracking,
-          .faults = 0x8001,
-          .frame = 0x01234567,
-          .x_m = 1.5,
-          .y_m = -0.25,
-          .z_m = 0.125,
-          .roll_deg = 0.5,
-          .pitch_deg = -0.375,
-          .yaw_deg = 2.25,
-          .q1_m = 0.0625,
-          .mean_m = 0.5,
-          .median_m = 0.25,
-          .q3_m = 0.75,
-          .rms_m = 1.25,
-          .matched = 0x89ABCDEF,
-          .age_ms = 47.5,
-          .sigma_translation_m = 0.0625,
-          .sigma_rotation_deg = 0.125,
-          .processing_ms = 12.5,
-          .command_echo = 2};
-}
-
-// The columns after the two times; 19088743 = 0x01234567, 2309737967 = 0x89ABCDEF.
-constexpr const char* kSampleRow =
-    "1,1,1,32769,19088743,1.5,-0.25,0.125,0.5,-0.375,2.25,0.0625,0.5,0.25,0.75,1.25,2309737967,47.5,0.0625,0."
-    "125,"
-    "12.5,2,1";
-
+/// The columns after the two times.
 std::string without_times(const std::string& row) { return row.substr(row.find(',', row.find(',') + 1) + 1); }
 
-void exchange_with_pymodbus(const Case& order, bool integers) {
+void exchange_with_pymodbus(const test::NamedWordOrder& order, bool integers) {
   std::ostringstream joints;
   joints << kTravel << ',' << kSlew << ',' << kLuff;
   std::vector<std::string> arguments{"--joints=" + joints.str(),
@@ -95,19 +60,21 @@ void exchange_with_pymodbus(const Case& order, bool integers) {
   EXPECT_FLOAT_EQ(static_cast<float>(poll.reading.luff_deg), static_cast<float>(kLuff));
   EXPECT_FALSE(poll.reading.torn);
 
-  const PlcWrite write = client.write(sample_block());
+  const PlcWrite write = client.write(test::sample_block());
   ASSERT_TRUE(write.ok()) << write.message;
-  EXPECT_EQ(without_times(peer.read_line()), kSampleRow);
+  EXPECT_EQ(without_times(peer.read_line()), std::string("1,") + test::kSampleRow + ",1") << "heartbeat 1";
   EXPECT_EQ(client.connections(), 1U);
 }
 
-class PlcPymodbus : public testing::TestWithParam<Case> {};
+class PlcPymodbus : public testing::TestWithParam<test::NamedWordOrder> {};
 
 TEST_P(PlcPymodbus, ReadsAndWritesFloat32) { exchange_with_pymodbus(GetParam(), false); }
 TEST_P(PlcPymodbus, ReadsAndWritesInt32) { exchange_with_pymodbus(GetParam(), true); }
 
-INSTANTIATE_TEST_SUITE_P(EveryWordOrder, PlcPymodbus, testing::ValuesIn(kOrders),
-                         [](const testing::TestParamInfo<Case>& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(EveryWordOrder, PlcPymodbus, testing::ValuesIn(test::kWordOrders),
+                         [](const testing::TestParamInfo<test::NamedWordOrder>& tested) {
+                           return tested.param.name;
+                         });
 
 TEST(PlcPymodbusCycle, HeartbeatMovesAndCommandsArrive) {
   PymodbusPeer peer({"--cycle-ms", "0"});

@@ -7,41 +7,17 @@
 #include <limits>
 #include <random>
 
+#include "tests/support/register_vectors.hpp"
+
 namespace hulltrack {
 namespace {
 
-constexpr std::array kOrders{WordOrder::abcd, WordOrder::cdab, WordOrder::badc, WordOrder::dcba};
+using test::sample_block;
+
 constexpr std::array kTypes{RegisterType::float32, RegisterType::int32, RegisterType::uint32,
                             RegisterType::int16, RegisterType::uint16};
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-/// A healthy block whose every field is exact in float32 and in steps of 1e-4.
-WriteBlock sample_block() {
-  return {.health = true,
-          .state = State::tracking,
-          .faults = 0xA5C3,
-          .frame = 0x01234567,
-          .x_m = 1.5,
-          .y_m = -0.25,
-          .z_m = 0.125,
-          .roll_deg = 0.5,
-          .pitch_deg = -0.375,
-          .yaw_deg = 2.25,
-          .q1_m = 0.0625,
-          .mean_m = 0.5,
-          .median_m = 0.25,
-          .q3_m = 0.75,
-          .rms_m = 1.25,
-          .matched = 0x89ABCDEF,
-          .age_ms = 47.5,
-          .sigma_translation_m = 0.0625,
-          .sigma_rotation_deg = 0.125,
-          .processing_ms = 12.5,
-          .command_echo = 2,
-          .heartbeat = 0xBEEF,
-          .heartbeat_copy = 0xBEEF};
-}
 
 // 123.456f is 0x42F6E979 in IEEE 754: struct.pack('>f', 123.456).hex() == '42f6e979'.
 TEST(RegisterCodec, Float32StandsAsHandWrittenInEveryWordOrder) {
@@ -66,7 +42,7 @@ TEST(RegisterCodec, NegativeInt32StandsAsHandWrittenInEveryWordOrder) {
 
 TEST(RegisterCodec, EveryBitPatternSurvivesTheRoundTrip) {
   std::mt19937 random(20240611);
-  for (const WordOrder order : kOrders) {
+  for (const auto& [order, name] : test::kWordOrders) {
     for (int i = 0; i < 10000; ++i) {
       const auto bits = static_cast<std::uint32_t>(random());
       EXPECT_EQ(decode_uint32(encode_uint32(bits, order), order), bits);
@@ -119,7 +95,7 @@ TEST(ReadBlock, ScaleSignAndBiasAreAppliedAsDocumented) {
 TEST(ReadBlock, WordOrderDoesNotTouchSingleRegisters) {
   PlcReadConfig config;
   config.slew = {.offset = 2, .type = RegisterType::uint16};
-  for (const WordOrder order : kOrders) {
+  for (const auto& [order, name] : test::kWordOrders) {
     config.word_order = order;
     std::array<std::uint16_t, 8> registers{};
     registers[2] = 0x1234;
@@ -156,7 +132,7 @@ TEST(ReadBlock, EveryTypeAndOrderRoundTripsToWithinItsResolution) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> value(0.0, 300.0);
   for (const RegisterType type : kTypes) {
-    for (const WordOrder order : kOrders) {
+    for (const auto& [order, name] : test::kWordOrders) {
       for (int i = 0; i < 200; ++i) {
         PlcReadConfig config;
         config.word_order = order;
@@ -181,16 +157,8 @@ TEST(ReadBlock, EveryTypeAndOrderRoundTripsToWithinItsResolution) {
   }
 }
 
-// struct.pack('>HHHHIffffffffffffIffffHH', ...) of sample_block(), word by word.
 TEST(WriteBlockCodec, Float32LayoutIsThatOfTheRegisterTable) {
-  const WriteRegisters expected{
-      0xBEEF, 1,      1,      0xA5C3, 0x0123, 0x4567,                   // 0..5
-      0x3FC0, 0x0000, 0xBE80, 0x0000, 0x3E00, 0x0000,                   // x 1.5, y -0.25, z 0.125
-      0x3F00, 0x0000, 0xBEC0, 0x0000, 0x4010, 0x0000,                   // roll 0.5, pitch -0.375, yaw 2.25
-      0x3D80, 0x0000, 0x3F00, 0x0000, 0x3E80, 0x0000, 0x3F40, 0x0000,   // q1, mean, median, q3
-      0x3FA0, 0x0000, 0x89AB, 0xCDEF, 0x423E, 0x0000,                   // rms 1.25, matched, age 47.5
-      0x3D80, 0x0000, 0x3E00, 0x0000, 0x4148, 0x0000, 2,      0xBEEF};  // sigmas, processing 12.5, echo, copy
-  EXPECT_EQ(encode_write_block(sample_block(), {}), expected);
+  EXPECT_EQ(encode_write_block(sample_block(), {}), test::kSampleRegisters);
 }
 
 TEST(WriteBlockCodec, Int32HoldsTenThousandths) {
@@ -223,7 +191,7 @@ TEST(WriteBlockCodec, Int32RoundsToNearestAndSaturates) {
 
 TEST(WriteBlockCodec, RoundTripsInEveryEncodingAndOrder) {
   for (const WriteEncoding encoding : {WriteEncoding::float32, WriteEncoding::int32_e4}) {
-    for (const WordOrder order : kOrders) {
+    for (const auto& [order, name] : test::kWordOrders) {
       const PlcWriteConfig config{.word_order = order, .encoding = encoding};
       const WriteBlock out = decode_write_block(encode_write_block(sample_block(), config), config);
       if (encoding == WriteEncoding::float32) {
