@@ -18,6 +18,7 @@
 #include "core/base/time.hpp"
 #include "plc/plc_config.hpp"
 #include "plc/register_codec.hpp"
+#include "plc/sim/plc_fault.hpp"
 #include "plc/write_block.hpp"
 
 namespace hulltrack::sim {
@@ -28,34 +29,6 @@ struct PlcServerConfig {
   PlcReadConfig read{};
   PlcWriteConfig write{};
   Nanoseconds dribble = std::chrono::milliseconds(20);  // between the bytes of a dribbled reply
-};
-
-enum class PlcFault {
-  none,
-  // the connection
-  refuse,      // connection refused; open ones are reset
-  black_hole,  // a SYN gets no answer; open connections are silent
-  pool_full,   // connections are accepted and closed at once; open ones are reset
-  reset,       // a request is answered with a reset
-  silent,      // requests are taken, nothing is answered
-  // the reply
-  late_reply,         // held back until the connection's next request has come, then sent before its reply
-  wrong_transaction,  // another request's transaction id
-  duplicate_reply,    // sent twice
-  truncated_reply,    // its first half
-  garbage_reply,      // random bytes, sometimes behind a correct header; the same ones in every run
-  dribbled_reply,     // byte by byte, PlcServerConfig::dribble apart
-  illegal_function,   // exception 01
-  illegal_address,    // exception 02
-  illegal_value,      // exception 03
-  busy,               // exception 06
-  write_refused,      // exception 02 to FC 16 only
-  // the values in the read block
-  frozen_heartbeat,  // joints still move
-  torn_block,        // travel of the new cycle, the rest of the old one, tail copy behind (if there is one)
-  not_a_number,      // travel, lowest raw value where the register is an integer
-  infinite,          // travel
-  out_of_range,      // travel 1 m beyond its maximum
 };
 
 /// One FC 16 request that covered the whole write block.
