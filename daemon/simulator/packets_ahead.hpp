@@ -19,7 +19,7 @@ namespace hulltrack {
 
 class PacketsAhead {
  public:
-  static constexpr std::size_t kReady = 400;  // 0.3 to 0.5 s
+  static constexpr std::size_t kReady = 3000;  // 2 to 4 s, 3.6 MB
 
   /// `berth` must outlive this.
   explicit PacketsAhead(const SimulatedBerth& berth);
