@@ -9,6 +9,7 @@
 #include <exception>
 #include <string>
 
+#include "core/base/text.hpp"
 #include "daemon/app/prepare.hpp"
 #include "daemon/app/service.hpp"
 #include "daemon/app/signals.hpp"
@@ -37,8 +38,9 @@ int refuse(const std::vector<Problem>& problems) {
 }
 
 int check(const Prepared& prepared, const std::string& file) {
-  std::printf("%s: good: %zu LiDAR(s), map %s with %zu points\n", file.c_str(), prepared.config.lidars.size(),
-              prepared.config.map_file.c_str(), prepared.map->cloud_H().size());
+  std::printf("%s: good: %s, map %s with %s\n", file.c_str(),
+              counted(prepared.config.lidars.size(), "LiDAR").c_str(), prepared.config.map_file.c_str(),
+              counted(prepared.map->cloud_H().size(), "point").c_str());
   return 0;
 }
 

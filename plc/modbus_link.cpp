@@ -133,8 +133,6 @@ struct ModbusLink::Impl {
 
   [[nodiscard]] bool connected() const { return modbus_get_socket(context.get()) >= 0; }
 
-  [[nodiscard]] std::string peer() const { return config.host + " port " + std::to_string(config.port); }
-
   LinkResult failed(LinkOutcome outcome, std::string message) {
     modbus_close(context.get());
     ++failures;
@@ -148,14 +146,12 @@ struct ModbusLink::Impl {
     if (now() < retry_at) return {.outcome = LinkOutcome::waiting};
     const SteadyTime begun = now();
     const Result<SocketAddress> address = resolver.next(config.response_timeout);
-    if (!address)
-      return failed(LinkOutcome::unreachable, "no connection to the PLC: " + address.error().message);
+    if (!address) return failed(LinkOutcome::unreachable, "no connection: " + address.error().message);
     const Nanoseconds left = std::max(config.response_timeout - (now() - begun), kShortestTimeout);
     const Result<int> socket = connect_within(*address, left);
     if (!socket) {
       resolver.failed();
-      return failed(LinkOutcome::unreachable, "no connection to the PLC at " + peer() + ": " +
-                                                  socket.error().message +
+      return failed(LinkOutcome::unreachable, "no connection: " + socket.error().message +
                                                   "; check its power, the cable, plc.host and plc.port");
     }
     modbus_set_socket(context.get(), *socket);
@@ -179,8 +175,7 @@ struct ModbusLink::Impl {
     failures = 0;
     if (!done) {
       result.exception = exception_code(error);
-      result.message =
-          "the PLC refuses " + request.words() + ": " + exception_words(result.exception, request);
+      result.message = request.words() + ": " + exception_words(result.exception, request);
     }
     return result;
   }
@@ -192,7 +187,7 @@ struct ModbusLink::Impl {
   }
 
   [[nodiscard]] std::string error_words(LinkOutcome outcome, int error, const Request& request) const {
-    const std::string what = "PLC at " + peer() + ", " + request.words() + ": ";
+    const std::string what = request.words() + ": ";
     switch (outcome) {
       case LinkOutcome::timeout:
         return what + "no complete reply within plc.response_timeout_ms = " +

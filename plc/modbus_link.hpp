@@ -34,7 +34,7 @@ enum class LinkOutcome {
 struct LinkResult {
   LinkOutcome outcome = LinkOutcome::waiting;
   int exception = 0;       // Modbus exception code with LinkOutcome::exception, otherwise 0
-  std::string message{};   // plain words; empty with ok and waiting
+  std::string message{};   // plain words, without the PLC's address; empty with ok and waiting
   SteadyTime requested{};  // just before the request was sent; meaningful with ok and exception
   SteadyTime answered{};   // just after the reply was complete
 

@@ -21,4 +21,8 @@ std::string format_text(const char* format, ...) {
   return line;
 }
 
+std::string counted(std::uint64_t number, const char* noun) {
+  return std::to_string(number) + ' ' + noun + (number == 1 ? "" : "s");
+}
+
 }  // namespace hulltrack

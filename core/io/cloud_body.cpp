@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/base/text.hpp"
 #include "core/io/map_file.hpp"
 #include "core/io/parse_number.hpp"
 
@@ -44,7 +45,7 @@ Result<Cloud> parse_ascii_body(HeaderLines& lines, std::size_t points, std::size
     for (std::size_t word = 0; word < words; ++word) {
       const std::string_view text = take_word(*line);
       if (text.empty()) {
-        return lines.error("has " + std::to_string(word) + " values, the header promises " +
+        return lines.error("has " + counted(word, "value") + ", the header promises " +
                            std::to_string(words));
       }
       for (int axis = 0; axis < 3; ++axis) {

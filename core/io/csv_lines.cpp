@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/base/text.hpp"
+
 namespace hulltrack {
 
 CsvLines::CsvLines(const std::filesystem::path& file) : name_(file.string()) {
@@ -75,8 +77,8 @@ Result<bool> CsvLines::next(std::size_t field_count) {
     rest.remove_prefix(comma + 1);
   }
   if (fields_.size() != field_count) {
-    return error("has " + std::to_string(fields_.size()) + " fields, must have " +
-                 std::to_string(field_count) + (stream_.eof() ? "; is the file cut short?" : ""));
+    return error("has " + counted(fields_.size(), "field") + ", must have " + std::to_string(field_count) +
+                 (stream_.eof() ? "; is the file cut short?" : ""));
   }
   return true;
 }

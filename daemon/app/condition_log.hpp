@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/base/log.hpp"
+#include "core/base/text.hpp"
 #include "core/base/time.hpp"
 
 namespace hulltrack {
@@ -46,7 +47,7 @@ class ConditionLog {
 
  private:
   [[nodiscard]] std::string held_back() const {
-    return episodes_ > 1 ? " (and " + std::to_string(episodes_ - 1) + " more times since the last such line)"
+    return episodes_ > 1 ? " (and " + counted(episodes_ - 1, "more time") + " since the last such line)"
                          : std::string{};
   }
 

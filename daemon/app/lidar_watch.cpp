@@ -57,66 +57,71 @@ void LidarWatch::update_silence(const LidarEvidence& evidence, SteadyTime now) {
       });
 }
 
+template <std::invocable Entry>
+void LidarWatch::tell(ConditionLog& log, bool active, SteadyTime now, Entry&& entry, const char* end) {
+  log.update(
+      active, now, [&] { return name_ + ": " + entry(); }, [&](Nanoseconds) { return name_ + ": " + end; });
+}
+
 void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
-  foreign_log_.update(
-      foreign_grows_.update(evidence.foreign, now), now,
+  tell(
+      foreign_log_, foreign_grows_.update(evidence.foreign, now), now,
       [&] {
         return format_text(
-            "%s: dropped datagrams from %s, which is not the configured source %s; %llu so far. Poses are "
-            "not affected; find out who sends to UDP port %u",
-            name_.c_str(), evidence.last_foreign.c_str(), config_.source.c_str(),
+            "dropped datagrams from %s, which is not the configured source %s; %llu so far. Poses are not "
+            "affected; find out who sends to UDP port %u",
+            evidence.last_foreign.c_str(), config_.source.c_str(),
             static_cast<unsigned long long>(evidence.foreign), config_.port);
       },
-      [&](Nanoseconds) { return name_ + ": no more datagrams from foreign senders"; });
-  rejected_log_.update(
-      rejected_grows_.update(evidence.status.packets_rejected, now), now,
+      "no more datagrams from foreign senders");
+  tell(
+      rejected_log_, rejected_grows_.update(evidence.status.packets_rejected, now), now,
       [&] {
         return format_text(
-            "%s: dropped datagrams that are not those of a %s: %s; %llu so far. Compare `model` and "
-            "`port` in the configuration with the sensor",
-            name_.c_str(), config_.model.c_str(), evidence.status.last_rejection.c_str(),
+            "dropped datagrams that are not those of a %s: %s; %llu so far. Compare `model` and `port` in "
+            "the configuration with the sensor",
+            config_.model.c_str(), evidence.status.last_rejection.c_str(),
             static_cast<unsigned long long>(evidence.status.packets_rejected));
       },
-      [&](Nanoseconds) { return name_ + ": no more malformed datagrams"; });
-  overflow_log_.update(
-      overflow_grows_.update(evidence.kernel_overflows, now), now,
+      "no more malformed datagrams");
+  tell(
+      overflow_log_, overflow_grows_.update(evidence.kernel_overflows, now), now,
       [&] {
         return format_text(
-            "%s: the kernel's receive buffer overflowed, %llu packets lost so far. Is this computer "
-            "overloaded? See net.core.rmem_max in hulltrackd(8)",
-            name_.c_str(), static_cast<unsigned long long>(evidence.kernel_overflows));
+            "the kernel's receive buffer overflowed, %s lost so far. Is this computer overloaded? See "
+            "net.core.rmem_max in hulltrackd(8)",
+            counted(evidence.kernel_overflows, "packet").c_str());
       },
-      [&](Nanoseconds) { return name_ + ": the receive buffer does not overflow any more"; });
+      "the receive buffer does not overflow any more");
 }
 
 void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
   const LidarStatus& status = evidence.status;
-  loss_log_.update(
-      !silent_ && status.loss > kWorthyLoss, now,
+  tell(
+      loss_log_, !silent_ && status.loss > kWorthyLoss, now,
       [&] {
         return format_text(
-            "%s: %.1f %% of its packets get lost on the way. Check cable, switch and this computer's load",
-            name_.c_str(), 100.0 * status.loss);
+            "%.1f %% of its packets get lost on the way. Check cable, switch and this computer's load",
+            100.0 * status.loss);
       },
-      [&](Nanoseconds) { return name_ + ": no packets get lost any more"; });
+      "no packets get lost any more");
   const bool turning = !silent_ && status.rpm > 0.0;
-  rate_log_.update(
-      turning && std::abs(status.rpm - expected_rpm_) > kRateTolerance * expected_rpm_, now,
+  tell(
+      rate_log_, turning && std::abs(status.rpm - expected_rpm_) > kRateTolerance * expected_rpm_, now,
       [&] {
-        return format_text(
-            "%s: turns at %.0f rpm where frame_rate_hz asks for %.0f, so a frame is not one turn",
-            name_.c_str(), status.rpm, expected_rpm_);
+        return format_text("turns at %.0f rpm where frame_rate_hz asks for %.0f, so a frame is not one turn",
+                           status.rpm, expected_rpm_);
       },
-      [&](Nanoseconds) { return format_text("%s: turns at %.0f rpm again", name_.c_str(), status.rpm); });
-  clock_log_.update(
-      status.clock_fault, now,
+      "no wrong rotation rate any more");
+  tell(
+      clock_log_, status.clock_fault, now,
       [&] {
         return format_text(
-            "%s: its clock is off by %.3f s; the time of reception is used instead. Check its time "
+            "its clock is off by %.3f s; the time of reception is used instead. Check its time "
             "synchronisation",
-            name_.c_str(), to_seconds(status.clock_offset));
+            to_seconds(status.clock_offset));
       },
-      [&](Nanoseconds) { return name_ + ": its clock agrees again"; });
+      "its clock agrees again");
 }
 
 }  // namespace hulltrack

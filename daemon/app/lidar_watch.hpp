@@ -4,6 +4,7 @@
 // what to do. Thread rule: one owner (rx). `now` is handed in. Cost: a few comparisons.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 
@@ -33,6 +34,10 @@ class LidarWatch {
   [[nodiscard]] bool silent() const { return silent_; }
 
  private:
+  /// An entry and an exit line of `log`, both in this LiDAR's name.
+  template <std::invocable Entry>
+  void tell(ConditionLog& log, bool active, SteadyTime now, Entry&& entry, const char* end);
+
   void update_silence(const LidarEvidence& evidence, SteadyTime now);
   void update_refused(const LidarEvidence& evidence, SteadyTime now);
   void update_quality(const LidarEvidence& evidence, SteadyTime now);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/io/map_file.hpp"
 #include "daemon/config/read_config.hpp"
 #include "lidar_drivers/model_registry.hpp"
@@ -32,8 +33,8 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
     complain("hull.map", map.error().message);
   } else if (const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
              map->cloud.size() < least) {
-    complain("hull.map", config.map_file.string() + ": has " + std::to_string(map->cloud.size()) +
-                             " points, fewer than health.min_matched = " + std::to_string(least) +
+    complain("hull.map", config.map_file.string() + ": has " + counted(map->cloud.size(), "point") +
+                             ", fewer than health.min_matched = " + std::to_string(least) +
                              "; no scan could ever match it: make a denser map");
   }
   if (preparation.problems.empty()) {

@@ -29,10 +29,12 @@ Service::Service(std::filesystem::path config_file, Prepared prepared, Signals& 
 int Service::run() {
   start_session(prepared_);
   second_began_ = minute_began_ = steady_now();
-  log_.write(LogLevel::notice, format_text("started: %zu LiDAR(s), map %s with %zu points, PLC %s:%u",
-                                           prepared_.config.lidars.size(), prepared_.config.map_file.c_str(),
-                                           prepared_.map->cloud_H().size(), prepared_.config.plc.host.c_str(),
-                                           prepared_.config.plc.port));
+  const Config& config = prepared_.config;
+  log_.write(
+      LogLevel::notice,
+      format_text("started: %s, map %s with %s, PLC %s:%u", counted(config.lidars.size(), "LiDAR").c_str(),
+                  config.map_file.c_str(), counted(prepared_.map->cloud_H().size(), "point").c_str(),
+                  config.plc.host.c_str(), config.plc.port));
   notifier_.ready();
   while (!stopping_ && !failure_.get()) {
     wait_for_signal(signals_);

@@ -99,7 +99,7 @@ void StateLog::announce(const WriteBlock& registers, const std::string& reason, 
     line += format_text(" after %.1f s of %s", to_seconds(now - told_since_), state_name(*told_));
   }
   if (unannounced_ > 1) {
-    line += format_text(" and %u changes in between", unannounced_ - 1);
+    line += " and " + counted(unannounced_ - 1, "change") + " in between";
   }
   for (const std::string& part :
        {figures(registers), fault_words(registers.faults), registers.health ? std::string{} : reason}) {

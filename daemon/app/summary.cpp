@@ -44,19 +44,19 @@ std::string status_line(const WriteBlock& registers, const Figures& figures, Nan
 }
 
 std::string summary_line(const WriteBlock& registers, const Figures& figures, Nanoseconds window) {
-  std::string line = format_text(
-      "last %.0f s: %s; %llu frames (%.1f Hz), health 1 in %.1f %%, %s, latency %.0f ms (worst %.0f)",
-      to_seconds(window), state_name(registers.state), static_cast<unsigned long long>(figures.frames),
-      per_second(figures.frames, window), percent(figures.healthy_frames, figures.frames),
-      q1_words(figures).c_str(), figures.latency_ms.mean(), figures.latency_ms.worst);
-  line += format_text(", computing %.1f ms (worst %.1f), %llu frames dropped", figures.processing_ms.mean(),
-                      figures.processing_ms.worst, static_cast<unsigned long long>(figures.frames_dropped));
+  std::string line =
+      format_text("last %.0f s: %s; %s (%.1f Hz), health 1 in %.1f %%, %s, latency %.0f ms (worst %.0f)",
+                  to_seconds(window), state_name(registers.state), counted(figures.frames, "frame").c_str(),
+                  per_second(figures.frames, window), percent(figures.healthy_frames, figures.frames),
+                  q1_words(figures).c_str(), figures.latency_ms.mean(), figures.latency_ms.worst);
+  line += format_text(", computing %.1f ms (worst %.1f), %s dropped", figures.processing_ms.mean(),
+                      figures.processing_ms.worst, counted(figures.frames_dropped, "frame").c_str());
   line += format_text(
-      "; %s (worst %.1f), %llu of %llu polls and %llu writes failed, longest gap between writes %.0f ms",
+      "; %s (worst %.1f), %llu of %llu polls and %s failed, longest gap between writes %.0f ms",
       plc_words(registers, figures).c_str(), figures.round_trip_ms.worst,
       static_cast<unsigned long long>(figures.polls_failed), static_cast<unsigned long long>(figures.polls),
-      static_cast<unsigned long long>(figures.writes_failed), figures.write_gap_ms.worst);
-  line += format_text("; %llu packets, %s, %llu refused", static_cast<unsigned long long>(figures.packets),
+      counted(figures.writes_failed, "write").c_str(), figures.write_gap_ms.worst);
+  line += format_text("; %s, %s, %llu refused", counted(figures.packets, "packet").c_str(),
                       lidar_words(registers, figures).c_str(),
                       static_cast<unsigned long long>(figures.packets_refused));
   return line;

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/text.hpp"
 #include "core/io/pcd_writer.hpp"
 #include "daemon/config/nearest_name.hpp"
 #include "daemon/tools/tools.hpp"
@@ -184,12 +185,11 @@ std::string join_addresses(const std::set<std::uint32_t>& ips) {
 }
 
 void print_summary(const DecodeOptions& options, const Decoder& decoder, const DecodeTally& tally) {
-  std::fprintf(stderr, "%s: %llu packets, %llu points, %s return, %.0f rpm, %.3f s\n", options.out.c_str(),
-               static_cast<unsigned long long>(tally.decoded), static_cast<unsigned long long>(tally.points),
+  std::fprintf(stderr, "%s: %s, %s, %s return, %.0f rpm, %.3f s\n", options.out.c_str(),
+               counted(tally.decoded, "packet").c_str(), counted(tally.points, "point").c_str(),
                return_mode_name(tally.return_mode), tally.rpm, to_seconds(tally.last - *tally.first));
   if (tally.rejected > 0) {
-    std::fprintf(stderr, "%llu datagrams refused, the last because: %s\n",
-                 static_cast<unsigned long long>(tally.rejected),
+    std::fprintf(stderr, "%s refused, the last because: %s\n", counted(tally.rejected, "datagram").c_str(),
                  decoder.explain(tally.last_rejection).c_str());
   }
   if (tally.senders.size() > 1) {

@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
                ":3: ", "has 5 fields, must have 6"},
         Broken{"cut_short", std::string(kHeader) + "1,2,3,4,5,0\n2,2,3", ":3: ", "cut short"},
         Broken{"too_many_fields", std::string(kHeader) + "1,2,3,4,5,0,9\n", ":2: ", "has 7 fields"},
-        Broken{"blank_line", std::string(kHeader) + "1,2,3,4,5,0\n\n2,2,3,4,5,0\n", ":3: ", "has 1 fields"},
+        Broken{"blank_line", std::string(kHeader) + "1,2,3,4,5,0\n\n2,2,3,4,5,0\n", ":3: ", "has 1 field,"},
         Broken{"not_a_number", std::string(kHeader) + "1,2,three,4,5,0\n",
                ":2: ", "theta_r is `three`, must be a finite number"},
         Broken{"nan", std::string(kHeader) + "1,nan,3,4,5,0\n", ":2: ", "d_x is `nan`"},
