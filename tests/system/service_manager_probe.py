@@ -1,0 +1,178 @@
+"""Runs inside the container of service_manager_test.py, beside a real systemd: what it and the PLC see of
+hulltrackd.service. Nothing here sleeps to let things happen or judges how long they took: it waits for a
+property, a register or a line of the journal. The PLC's log is the clock: writes go on all the time.
+"""
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.insert(0, "/opt")
+from service_process import Plc, Process  # noqa: E402
+
+UNIT = "hulltrackd.service"
+CONFIG = pathlib.Path("/etc/hulltrackd/hulltrackd.toml")
+GOOD = CONFIG.read_text(encoding="utf-8")
+PATIENCE_S = 60.0
+
+
+def systemctl(*arguments):
+    return subprocess.run(["systemctl", *arguments], capture_output=True, text=True, check=False)
+
+
+def property_of(name, unit=UNIT):
+    return systemctl("show", unit, "--property", name, "--value").stdout.strip()
+
+
+def journal():
+    return subprocess.run(["journalctl", "--unit", UNIT, "--output", "cat", "--no-pager"], capture_output=True,
+                          text=True, check=False).stdout
+
+
+def until(law, what):
+    deadline = time.monotonic() + PATIENCE_S
+    while not law():
+        assert time.monotonic() < deadline, f"never: {what}; the journal ends with\n{journal()[-2000:]}"
+        time.sleep(0.02)
+
+
+def fill(path):
+    """Until not even the first datagram of a new socket fits."""
+    sockets = []
+    sent = True
+    while sent:
+        sockets.append(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_NONBLOCK))
+        sockets[-1].connect(path)
+        sent = False
+        try:
+            while True:
+                sockets[-1].send(b"<15>fill")
+                sent = True
+        except BlockingIOError:
+            pass
+    return sockets
+
+
+def main_pid():
+    return int(property_of("MainPID"))
+
+
+class UnitTest(unittest.TestCase):
+    def setUp(self):
+        CONFIG.write_text(GOOD, encoding="utf-8")
+        self.plc = self.start(Plc("--port", "1502"))
+        self.start(Process(["/opt/room_lidar", "2368"]))
+        self.addCleanup(systemctl, "stop", UNIT)
+        started = systemctl("start", UNIT)  # returns when READY=1 has come
+        self.assertEqual(started.returncode, 0, started.stderr + journal())
+        self.wait_healthy()
+
+    def start(self, process):
+        self.addCleanup(process.close)
+        return process
+
+    def wait_healthy(self):
+        """Health 1 in a block that is written from now on."""
+        begin = time.monotonic_ns()
+        return self.plc.wait_for(lambda write: write["health"] == 1 and write["mono_ns"] > begin, "with health 1")
+
+    def wait_writes(self, count):
+        begin = len(self.plc.writes())
+        until(lambda: len(self.plc.writes()) >= begin + count, f"{count} writes")
+
+    def wait_restarted(self, old, restarts):
+        until(lambda: int(property_of("NRestarts")) == restarts and property_of("ActiveState") == "active",
+              f"restart {restarts}")
+        self.assertNotIn(main_pid(), (0, old))
+        self.wait_healthy()
+
+    def test_is_ready_says_how_it_is_and_feeds_the_watchdog(self):
+        self.assertEqual(property_of("ActiveState"), "active")
+        until(lambda: "tracking" in property_of("StatusText"), "the status text")
+        fed = property_of("WatchdogTimestampMonotonic")
+        until(lambda: property_of("WatchdogTimestampMonotonic") not in (fed, "0"), "the watchdog is fed")
+        self.assertEqual(property_of("NRestarts"), "0")
+
+    def test_a_reload_keeps_the_process(self):
+        pid = main_pid()
+        self.assertEqual(systemctl("reload", UNIT).returncode, 0)
+        until(lambda: "the new configuration is in force" in journal(), "the reload")
+        self.wait_healthy()
+        CONFIG.write_text(GOOD + "nonsense = 1\n", encoding="utf-8")
+        systemctl("reload", UNIT)
+        until(lambda: "reload refused" in journal(), "the refusal")
+        self.wait_healthy()
+        self.assertEqual(main_pid(), pid)
+
+    def test_is_restarted_after_it_was_killed_as_by_the_kernel_out_of_memory(self):
+        pid = main_pid()
+        os.kill(pid, signal.SIGKILL)
+        self.wait_restarted(pid, 1)
+
+    def test_is_restarted_by_the_watchdog_after_a_hang(self):
+        pid = main_pid()
+        os.kill(pid, signal.SIGSTOP)
+        self.wait_restarted(pid, 1)
+        self.assertIn("Watchdog timeout", journal())
+
+    def test_an_error_in_the_configuration_is_not_tried_again(self):
+        CONFIG.write_text(GOOD + "nonsense = 1\n", encoding="utf-8")
+        self.assertNotEqual(systemctl("restart", UNIT).returncode, 0)
+        until(lambda: property_of("ActiveState") == "failed", "failed")
+        self.assertEqual((property_of("ExecMainStatus"), property_of("NRestarts")), ("78", "0"))
+        systemctl("reset-failed", UNIT)
+
+    def test_a_stuck_journal_holds_nothing_up(self):
+        pid, journald = main_pid(), int(property_of("MainPID", "systemd-journald.service"))
+        CONFIG.write_text(GOOD + "nonsense = 1\n", encoding="utf-8")
+        os.kill(journald, signal.SIGSTOP)
+        self.addCleanup(os.kill, journald, signal.SIGCONT)
+        fillers = fill("/dev/log")
+        self.addCleanup(lambda: [filler.close() for filler in fillers])
+        first = len(self.plc.writes())
+        for _ in range(20):  # each of them is three lines
+            os.kill(pid, signal.SIGHUP)
+            self.wait_writes(2)
+        self.wait_healthy()
+        self.assertNotIn(0, [write["health"] for write in self.plc.writes()[first:]])
+        self.assertEqual(pathlib.Path(f"/proc/{pid}/comm").read_text(encoding="ascii"), "hulltrackd\n")
+
+    def test_runs_locked_down_on_file_systems_that_cannot_be_written(self):
+        pid = main_pid()
+        status = dict(line.split(":\t", 1) for line in
+                      pathlib.Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines())
+        self.assertEqual((status["NoNewPrivs"], status["Seccomp"], int(status["CapEff"], 16)), ("1", "2", 0))
+        self.assertNotIn("0", status["Uid"].split())
+        for folder in ("/", "/var", "/etc", "/usr"):
+            flags = os.statvfs(f"/proc/{pid}/root{folder}").f_flag
+            self.assertTrue(flags & os.ST_RDONLY, f"{folder} can be written")
+
+    def test_datagrams_of_addresses_that_the_unit_does_not_allow_never_arrive(self):
+        subprocess.run(["ip", "address", "replace", "10.9.9.9/32", "dev", "lo"], check=True)
+        senders = {}
+        for address in ("10.9.9.9", "127.0.0.9"):
+            senders[address] = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self.addCleanup(senders[address].close)
+            senders[address].bind((address, 0))
+
+        def send():  # the one that must not arrive first
+            for sender in senders.values():
+                sender.sendto(b"no packet of a LiDAR", ("127.0.0.1", 2368))
+            return "127.0.0.9" in journal()
+
+        until(send, "a line about the sender that is allowed")
+        self.assertNotIn("10.9.9.9", journal())
+
+    def test_stops_with_health_0_and_state_7(self):
+        self.assertEqual(systemctl("stop", UNIT).returncode, 0)
+        self.assertEqual((property_of("ActiveState"), property_of("Result")), ("inactive", "success"))
+        last = self.plc.writes()[-1]
+        self.assertEqual((last["health"], last["state"]), (0, 7))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

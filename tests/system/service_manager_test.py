@@ -1,0 +1,110 @@
+"""The unit under a real systemd: boots one in a container and runs service_manager_probe.py inside it.
+
+The container's root is a temporary folder with the host's /usr (read-only), the unit with its program's path
+replaced as the installation does, and a loopback of its own. Needs root, systemd-nspawn and cgroups that it may
+write; skipped (77) where there are none. Memory limits are not tried: the container may have no such controller.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+CONFIG = """
+[plc]
+host = "127.0.0.1"
+port = 1502
+
+[[lidar]]
+model = "velodyne_vlp16"
+bind = "0.0.0.0"
+port = 2368
+mount = { xyz = [0.2, -0.3, 0.5], rpy_deg = [35.0, 20.0, 10.0] }
+
+[hull]
+map = "room.pcd"
+"""
+PROBE_UNIT = """
+[Unit]
+Requires=basic.target dbus.service
+After=basic.target dbus.service
+[Service]
+Type=oneshot
+ExecStart=/usr/bin/python3 /opt/service_manager_probe.py
+StandardOutput=append:/root/probe.txt
+StandardError=append:/root/probe.txt
+ExecStopPost=/usr/bin/systemctl poweroff -ff
+"""
+PASSWD = "root:x:0:0::/root:/bin/sh\nmessagebus:x:100:100::/:/usr/sbin/nologin\n"
+GROUP = "root:x:0:\nmessagebus:x:100:\nsystemd-journal:x:101:\n"
+USER = "hulltrackd:x:998:"
+# Nothing in the container waits for a network, and nothing needs one.
+MASKED = ("systemd-networkd.service", "systemd-networkd-wait-online.service", "systemd-resolved.service")
+PATIENCE_S = 400
+
+
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def furnish(root, hulltrackd, room_lidar, support, unit):
+    for folder in ("usr", "proc", "sys", "dev", "run", "tmp", "var/tmp", "root", "opt", "etc/hulltrackd"):
+        (root / folder).mkdir(parents=True)
+    for link in ("bin", "sbin", "lib", "lib64"):
+        (root / link).symlink_to(f"usr/{link}")
+    shutil.copy("/usr/lib/os-release", root / "etc/os-release")
+    write(root / "etc/passwd", PASSWD + USER + "998::/:/usr/sbin/nologin\n")
+    write(root / "etc/group", GROUP + USER + "\n")
+    write(root / "etc/machine-id", "uninitialized\n")
+    units = root / "etc/systemd/system"
+    text = unit.read_text(encoding="utf-8")
+    write(units / unit.name, text.replace("ExecStart=/usr/bin/", "ExecStart=/opt/"))
+    write(units / "probe.service", PROBE_UNIT)
+    for name in MASKED:
+        (units / name).symlink_to("/dev/null")
+    here = pathlib.Path(__file__).parent
+    for program in (hulltrackd, room_lidar, support / "service_process.py", support / "pymodbus_plc.py",
+                    here / "service_manager_probe.py"):
+        shutil.copy(program, root / "opt")
+    subprocess.run([room_lidar, "--map", root / "etc/hulltrackd/room.pcd"], check=True)
+    write(root / "etc/hulltrackd/hulltrackd.toml", CONFIG)
+    subprocess.run(["chmod", "-R", "a+rX", root], check=True)  # the service is not root
+
+
+def boot(root):
+    command = ["systemd-nspawn", "--quiet", "--register=no", "--keep-unit", "--private-network", "--capability=all",
+               "--system-call-filter=@memlock bpf @keyring perf_event_open", f"--directory={root}",
+               "--bind-ro=/usr", "--console=pipe", f"--machine=hulltrackd-test-{os.getpid()}", "--boot",
+               "systemd.unit=probe.service"]
+    environment = dict(os.environ, SYSTEMD_NSPAWN_UNIFIED_HIERARCHY="1")
+    try:
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+                              check=False, timeout=PATIENCE_S, env=environment)
+        return done.stdout + done.stderr
+    except subprocess.TimeoutExpired as expired:  # which has killed nspawn and with it the container
+        return f"not done after {PATIENCE_S} s\n{(expired.stdout or b'').decode(errors='replace')}"
+
+
+def main(hulltrackd, room_lidar, support, unit):
+    if os.geteuid() != 0 or shutil.which("systemd-nspawn") is None:
+        print("needs root and systemd-nspawn (package systemd-container): skipped")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder).resolve() / "root"
+        root.mkdir(mode=0o755)
+        pathlib.Path(folder).chmod(0o755)
+        furnish(root, *map(pathlib.Path, (hulltrackd, room_lidar, support, unit)))
+        console = boot(root)
+        report = root / "root/probe.txt"
+        if not report.exists():
+            print(console[-3000:] + "\nno systemd came up in a container here: skipped")
+            return 77
+        text = report.read_text(encoding="utf-8", errors="replace")
+    print(text)
+    return 0 if text.rstrip().endswith("OK") else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
