@@ -23,6 +23,20 @@ void add_subcommands(CLI::App& app) {
   app.require_subcommand(1);
 }
 
+/// A first word that is neither option nor subcommand; CLI11 would only say that one is missing.
+void check_subcommand(CLI::App& app, const std::string& word) {
+  std::string known;
+  for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (subcommand->get_name() == word) {
+      return;
+    }
+    known += (known.empty() ? "" : ", ") + subcommand->get_name();
+  }
+  if (!word.starts_with('-')) {
+    throw ToolError(kExitUsage, "there is no subcommand \"" + word + "\"; there are " + known);
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Tools around hulltrackd, the service that tracks a moored ship's hull for a ship loader."};
   app.name("hulltrack");
@@ -30,6 +44,9 @@ int run(int argc, char** argv) {
   app.footer("Each subcommand explains itself: hulltrack SUBCOMMAND --help. Manual: hulltrack(1).");
   add_subcommands(app);
   try {
+    if (argc > 1) {
+      check_subcommand(app, argv[1]);
+    }
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& help_or_version) {

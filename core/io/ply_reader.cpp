@@ -147,7 +147,8 @@ class HeaderParser {
       const auto found = std::find_if(all.begin(), all.end(),
                                       [&](const Property& p) { return p.name == kNames[axis] && p.real; });
       if (found == all.end()) {
-        return Error{"its vertices have no property float " + std::string(kNames[axis])};
+        return Error{"its vertices have no property float " + std::string(kNames[axis]) +
+                     "; save it with x y z as floats"};
       }
       header_.axes[axis] = static_cast<std::size_t>(found - all.begin());
     }

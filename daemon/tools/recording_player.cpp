@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/text.hpp"
 #include "daemon/app/frame_pipeline.hpp"
 
 namespace hulltrack {
@@ -50,6 +51,7 @@ RecordingPlayer::RecordingPlayer(const std::filesystem::path& folder, const Conf
                                  PcapSource&& source, DatagramRouter&& router, ScanBuilder&& builder,
                                  std::vector<PlcCsvRow>&& rows)
     : pcap_name_((folder / "lidar.pcap").string()),
+      plc_name_((folder / "plc.csv").string()),
       lidars_(config.lidars),
       plc_(config.plc),
       source_(std::move(source)),
@@ -88,11 +90,20 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
       if (std::string nothing = explain_no_frame(); !nothing.empty()) {
         return Error{std::move(nothing)};
       }
+      if (joints_time(rows_.front()) > last_datagram_) {
+        return Error{explain_no_joints()};
+      }
       builder_.finish();
       continue;
     }
     if (const auto lidar = router_.lidar_of(datagram)) {
-      ++datagrams_;
+      last_datagram_ = datagram.received;
+      if (datagrams_++ == 0) {
+        first_datagram_ = datagram.received;
+        if (joints_time(rows_.back()) < first_datagram_) {
+          return Error{explain_no_joints()};
+        }
+      }
       builder_.add(*lidar, datagram);
     }
   }
@@ -125,11 +136,25 @@ std::string RecordingPlayer::explain_no_frame() const {
   return {};
 }
 
+MeasurementTime RecordingPlayer::joints_time(const PlcCsvRow& row) const {
+  return measurement_time_from_ns(row.t_ns) - plc_.latency;
+}
+
+/// The two files do not speak of the same time, so that no frame can have joints.
+std::string RecordingPlayer::explain_no_joints() const {
+  const bool before = joints_time(rows_.back()) < first_datagram_;
+  const Nanoseconds apart =
+      before ? first_datagram_ - joints_time(rows_.back()) : joints_time(rows_.front()) - last_datagram_;
+  return plc_name_ + ": its rows lie " + format_text("%.1f s ", to_seconds(apart)) +
+         (before ? "before" : "after") + " the datagrams of " + pcap_name_ +
+         "; both must be of one recording, stamped by one clock in UTC nanoseconds";
+}
+
 void RecordingPlayer::play_plc_until(MeasurementTime last_firing) {
   const auto bracketed = [&] { return joints_.newest() && joints_.newest()->time >= last_firing; };
   while (next_row_ < rows_.size() && !bracketed()) {
     const PlcCsvRow& row = rows_[next_row_];
-    if (measurement_time_from_ns(row.t_ns) - plc_.latency > last_firing + JointHistory::kMaxGap) {
+    if (joints_time(row) > last_firing + JointHistory::kMaxGap) {
       return;
     }
     play_row(row);

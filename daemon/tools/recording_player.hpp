@@ -47,10 +47,13 @@ class RecordingPlayer {
                   DatagramRouter&& router, ScanBuilder&& builder, std::vector<PlcCsvRow>&& rows);
   [[nodiscard]] Result<bool> read_until_frame(Scan& scan);
   [[nodiscard]] std::string explain_no_frame() const;
+  [[nodiscard]] std::string explain_no_joints() const;
+  /// When the joints of `row` were measured.
+  [[nodiscard]] MeasurementTime joints_time(const PlcCsvRow& row) const;
   void play_plc_until(MeasurementTime last_firing);
   void play_row(const PlcCsvRow& row);
 
-  std::string pcap_name_;
+  std::string pcap_name_, plc_name_;
   std::vector<LidarConfig> lidars_;
   PlcConfig plc_;
   PcapSource source_;
@@ -58,6 +61,7 @@ class RecordingPlayer {
   ScanBuilder builder_;
   bool at_end_ = false;
   std::uint64_t datagrams_ = 0;  // for one of the LiDARs
+  MeasurementTime first_datagram_{}, last_datagram_{};
 
   std::vector<PlcCsvRow> rows_;
   std::size_t next_row_ = 0;

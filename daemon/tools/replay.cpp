@@ -23,7 +23,7 @@ struct ReplayOptions {
   std::string folder;
   std::string config;
   std::string csv;
-  MetricsScope metrics = MetricsScope::visible_subset;
+  std::string metrics = "visible";
   bool no_timing = false;
   bool quiet = false;
 };
@@ -71,6 +71,13 @@ void must(const Result<void>& done) {
   }
 }
 
+MetricsScope metrics_scope(const std::string& word) {
+  if (word == "visible") return MetricsScope::visible_subset;
+  if (word == "full") return MetricsScope::visible_full;
+  if (word == "paper") return MetricsScope::whole_map;
+  throw ToolError(kExitUsage, "--metrics " + word + ": must be visible, full or paper");
+}
+
 Config load_config(const ReplayOptions& options) {
   const std::filesystem::path file = options.config.empty()
                                          ? std::filesystem::path(options.folder) / "hulltrackd.toml"
@@ -90,7 +97,7 @@ Config load_config(const ReplayOptions& options) {
     }
     throw ToolError(text);
   }
-  reading.config->tracker.metrics_scope = options.metrics;
+  reading.config->tracker.metrics_scope = metrics_scope(options.metrics);
   return std::move(*reading.config);
 }
 
@@ -156,15 +163,12 @@ void add_replay(CLI::App& app) {
       ->required();
   command->add_option("--config", options->config, "configuration; default REC/hulltrackd.toml");
   command->add_option("--csv", options->csv, "write one line a frame to this file");
-  const std::map<std::string, MetricsScope> scopes{{"visible", MetricsScope::visible_subset},
-                                                   {"full", MetricsScope::visible_full},
-                                                   {"paper", MetricsScope::whole_map}};
   command
       ->add_option(
           "--metrics", options->metrics,
           "map points of the distances: visible (fixed subset), full (all visible), paper (whole map)")
-      ->transform(CLI::CheckedTransformer(scopes).description("{visible,full,paper}"))
-      ->default_str("visible");
+      ->option_text("{visible,full,paper}")
+      ->capture_default_str();
   command->add_flag("--no-timing", options->no_timing,
                     "leave the column ms empty, so that two runs compare byte for byte");
   command->add_flag("--quiet", options->quiet, "neither progress nor summary");

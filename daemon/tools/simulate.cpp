@@ -47,7 +47,9 @@ void watch_for_interrupts() {
 class ProgressLine {
  public:
   explicit ProgressLine(std::string what) : what_(std::move(what)) {}
-  ~ProgressLine() { std::fputc('\n', stderr); }
+  ~ProgressLine() {
+    if (started_) std::fputc('\n', stderr);
+  }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 

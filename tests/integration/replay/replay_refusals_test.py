@@ -49,6 +49,14 @@ def put(index, text):
     return lines(change)
 
 
+def an_hour_earlier(data):
+    """A recorder's clock in another time zone than the capture's."""
+    header, *rows = data.rstrip(b"\n").split(b"\n")
+    earlier = (b",".join([str(int(t_ns) - 3600 * 10**9).encode(), rest])
+             for t_ns, rest in (row.split(b",", 1) for row in rows))
+    return b"\n".join([header, *earlier]) + b"\n"
+
+
 def without_udp(data):
     """Every frame becomes ARP."""
     return data[:24] + b"".join(head + frame[:12] + b"\x08\x06" + frame[14:] for head, frame in pcap_records(data))
@@ -86,6 +94,8 @@ REFUSALS = [
     ("no rows", edit("plc.csv", lines(lambda rows: rows[:1])), "plc.csv: ", ["has a header but no rows", "record it again"]),
     ("time backwards", edit("plc.csv", lines(swap)), "plc.csv:7: ",
      ["time runs backwards", "in line 6", "must be in order of time"]),
+    ("joints of another hour", edit("plc.csv", an_hour_earlier), "plc.csv: ",
+     ["its rows lie 3599.2 s before the datagrams of ", "lidar.pcap", "stamped by one clock"]),
     ("truth of another format", edit("truth.csv", put(0, b"truth")), "truth.csv:1: ", ["the first line must be"]),
     ("text for a map", edit("hull.pcd", lambda data: b"solid hull\n"), "hull.pcd: ",
      ["neither a PCD nor a PLY file", "convert"]),
@@ -133,6 +143,21 @@ def check_cut(tool, folder):
     assert len(before) >= 2 and before == whole.read_text().splitlines()[:len(before)], before
 
 
+def check_command_lines(tool, recording):
+    """Exit 2 for a wrong command line, 1 for a folder or disk that does not take the result; one plain line."""
+    cases = [(2, ["simulat"], ["no subcommand \"simulat\"", "simulate"]),
+             (2, ["replay", recording, "--metrics", "fll"], ["--metrics fll", "visible, full or paper"]),
+             (1, ["simulate", "--frames", "1", "--out", recording], ["is not empty", "--force"]),
+             (1, ["replay", recording, "--quiet", "--csv", "/dev/full"], ["/dev/full: ", "No space left"]),
+             (1, ["replay", recording, "--quiet", "--csv", recording / "no" / "folder.csv"], ["--csv"])]
+    for code, command, words in cases:
+        run = subprocess.run([tool, *map(str, command)], capture_output=True, text=True, timeout=120)
+        assert run.returncode == code and run.stderr.count("\n") == 1 and run.stderr[0] != "\n", (command, run)
+        for word in words:
+            assert word in run.stderr, (word, run.stderr)
+        print(run.stderr, end="")
+
+
 def check_map_of_the_service(daemon, folder):
     (folder / "hull.pcd").write_bytes(b"solid hull\n")
     config = folder / "hulltrackd.toml"
@@ -162,6 +187,7 @@ def main():
         for what, spoil, begins, words in REFUSALS:
             check_refusal(tool, spoilt(spoil), what, begins, words)
         check_cut(tool, spoilt(lambda folder: None))
+        check_command_lines(tool, spoilt(lambda folder: None))
         check_map_of_the_service(daemon, spoilt(lambda folder: None))
 
 
