@@ -52,13 +52,13 @@ class Lines:
 
 
 class Process:
-    """A child with its standard input, output and error piped."""
+    """A child with its standard input, output and error piped; `stderr`: to this descriptor instead."""
 
-    def __init__(self, command, env=None):
+    def __init__(self, command, env=None, stderr=subprocess.PIPE):
         self.child = subprocess.Popen([str(part) for part in command], stdin=subprocess.PIPE, text=True,
-                                      stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=env)
+                                      stdout=subprocess.PIPE, stderr=stderr, env=env)
         self.out = Lines(self.child.stdout)
-        self.err = Lines(self.child.stderr)
+        self.err = Lines(self.child.stderr or ())
 
     def say(self, line):
         self.child.stdin.write(line + "\n")
@@ -79,7 +79,8 @@ class Process:
             self.child.wait()
         for lines, stream in ((self.out, self.child.stdout), (self.err, self.child.stderr)):
             lines.thread.join()
-            stream.close()
+            if stream:
+                stream.close()
 
 
 class Plc(Process):
@@ -103,7 +104,7 @@ class Plc(Process):
 class Service(Process):
     """hulltrackd with a notification socket of its own; `--stderr` gives its log."""
 
-    def __init__(self, program, config, folder, watchdog_usec=None):
+    def __init__(self, program, config, folder, watchdog_usec=None, stderr=subprocess.PIPE):
         path = str(pathlib.Path(folder) / "notify")
         self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.notify.bind(path)
@@ -114,7 +115,7 @@ class Service(Process):
         env.pop("WATCHDOG_USEC", None)
         if watchdog_usec:
             env["WATCHDOG_USEC"] = str(watchdog_usec)
-        super().__init__([program, "--config", config, "--stderr"], env)
+        super().__init__([program, "--config", config, "--stderr"], env, stderr)
 
     def read_notices(self):
         """Reads at once, as a service manager does: a full socket would hold up the service's main thread."""

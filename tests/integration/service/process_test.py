@@ -1,4 +1,5 @@
 """hulltrackd as a process: start, stop, reload, exit codes, what the service manager and the PLC see."""
+import os
 import pathlib
 import signal
 import socket
@@ -29,6 +30,20 @@ map = "room.pcd"
 
 def healthy(record):
     return record["health"] == 1
+
+
+def full_pipe(test):
+    """The writing end of a pipe without room for a byte."""
+    reader, writer = os.pipe()
+    test.addCleanup(os.close, reader)
+    test.addCleanup(os.close, writer)
+    os.set_blocking(writer, False)
+    try:
+        while os.write(writer, b"\n" * 4096):
+            pass
+    except BlockingIOError:
+        os.set_blocking(writer, True)
+    return writer
 
 
 class ServiceTest(unittest.TestCase):
@@ -172,6 +187,22 @@ class ServiceTest(unittest.TestCase):
                 done = self.run_to_end(*arguments)
                 self.assertEqual(done.returncode, 78)
                 self.assertIn("room.pcd", done.stderr)
+
+    def test_a_standard_error_that_nobody_reads_holds_nothing_up(self):
+        plc = self.start(Plc())
+        self.start(Process([ROOM_LIDAR, self.lidar_port]))
+        self.write_config(plc.port)
+        service = self.start(Service(PROGRAM, self.config, self.folder, stderr=full_pipe(self)))
+        service.wait_ready()
+        plc.wait_for(healthy, "with health 1")
+        self.write_config(plc.port, "\nnonsense = 1\n")
+        for _ in range(20):  # each of them is three lines
+            service.signal(signal.SIGHUP)
+            plc.wait_for(healthy, "with health 1")
+        self.assertNotIn(0, [record["health"] for record in self.after_first_health(plc)])
+        service.signal(signal.SIGTERM)
+        self.assertEqual(service.wait(), 0)
+        self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
 
     def test_printed_configuration_reads_back_equal(self):
         self.write_config(502)
