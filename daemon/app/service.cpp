@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "daemon/app/farewell.hpp"
 #include "daemon/app/live_time.hpp"
 #include "daemon/app/summary.hpp"
 
@@ -107,16 +108,31 @@ void Service::finish_reload() {
 
 void Service::swap_to(Prepared next) {
   heartbeat_ = session_->end(Session::Ending::for_reload);
+  const WriteBlock last = session_->registers();
+  const SteadyTime left_at = steady_now();
   session_.reset();
   try {
     start_session(next);
     prepared_ = std::move(next);
     log_.apply(prepared_.config.log);
     log_.write(LogLevel::notice, "reload: the new configuration is in force; the hull is searched for again");
-  } catch (const std::exception& error) {
-    log_.write(LogLevel::error,
-               format_text("reload refused: %s. The old configuration stays in force", error.what()));
+  } catch (const std::exception& refusal) {
+    fall_back(refusal.what(), last, left_at);
+  }
+}
+
+/// `last`: what the registers have held since `left_at`, maybe health 1.
+void Service::fall_back(const std::string& refusal, const WriteBlock& last, SteadyTime left_at) {
+  try {
     start_session(prepared_);
+    log_.write(LogLevel::error, "reload refused: " + refusal + ". The old configuration stays in force");
+  } catch (const std::exception&) {
+    log_.write(LogLevel::error, "reload failed: " + refusal + ". The old configuration cannot go on either");
+    if (const PlcWrite written = write_farewell(prepared_.config.plc, last, left_at, heartbeat_);
+        !written.ok()) {
+      log_.write(LogLevel::error, "the PLC could not be told that the service stops: " + written.message);
+    }
+    throw;
   }
 }
 

@@ -3,13 +3,16 @@
 // Runs in the main thread, ten turns a second. SIGTERM and SIGINT end it with a last write of health 0,
 // state 7; SIGHUP reads the files again in a thread of its own and swaps only when all of them are good.
 // The watchdog is fed only while every thread makes progress.
-// Failure: an exit code, after one line in the log.
+// Failure: an exit code, after one line in the log. run() throws when there is nothing to run: the first
+// session cannot start, or after a reload neither the new configuration nor the old one can (the PLC is
+// told).
 #pragma once
 
 #include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "daemon/app/figures.hpp"
 #include "daemon/app/mailbox.hpp"
@@ -35,6 +38,7 @@ class Service {
   void begin_reload();
   void finish_reload();
   void swap_to(Prepared next);
+  void fall_back(const std::string& refusal, const WriteBlock& last, SteadyTime left_at);
   void supervise(SteadyTime now);
   void report(SteadyTime now);
 

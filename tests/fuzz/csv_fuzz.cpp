@@ -2,7 +2,7 @@
 // keeps the law of the tables: finite values, time that never runs backwards.
 //
 // The readers take files, so each input becomes one in memory: no disk, no name to collide.
-#include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -160,6 +160,28 @@ class ServiceTest(unittest.TestCase):
             service.err.find(lambda line: "in use" in line and "old configuration stays" in line, "about the port")
             plc.wait_for(healthy, "with health 1 from the old configuration")
 
+    def test_stop_during_a_reload_that_reads_a_big_map_leaves_health_0_and_state_7(self):
+        plc, service = self.start_all()
+        self.write_big_map("big.pcd", 3000000)
+        text = self.config.read_text(encoding="utf-8")
+        self.config.write_text(text.replace("room.pcd", "big.pcd"), encoding="utf-8")
+        service.signal(signal.SIGHUP)
+        service.wait_for_notice(lambda notice: "RELOADING=1" in notice, "RELOADING=1")
+        service.signal(signal.SIGTERM)
+        self.assertEqual(service.wait(), 0, service.err.all)
+        last = plc.writes()[-1]
+        self.assertEqual((last["health"], last["state"]), (0, 7))
+        self.assertTrue(any("stopped as asked" in line for line in service.err.all), service.err.all)
+
+    def write_big_map(self, name, points):
+        """The room's points again and again, as binary PCD: what takes long to read."""
+        header, body = self.map.read_bytes().split(b"DATA binary\n")
+        count = int(next(line for line in header.split(b"\n") if line.startswith(b"POINTS")).split()[1])
+        times = points // count
+        for key in (b"WIDTH", b"POINTS"):
+            header = header.replace(key + b" %d" % count, key + b" %d" % (count * times))
+        (self.folder / name).write_bytes(header + b"DATA binary\n" + body * times)
+
     def test_port_in_use_is_one_line_and_exit_1(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
             taken.bind(("127.0.0.1", 0))

@@ -1,0 +1,147 @@
+// Integrity::run against scenes written by hand: a corner of three walls, one ray to every surfel.
+//
+// The sensor stands at the world's origin and L is W. No ray casting, no visibility, no tracker: a ray ends
+// where the test says, so that every answer follows from the definition.
+#include "core/tracking/integrity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace hulltrack {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Squares of 4 x 4 m, 5 cm apart, whose normals are X, Y and Z, off the origin by 8, 7 and 6 m.
+Cloud corner() {
+  Cloud cloud;
+  for (float a = -2.0F; a < 2.0F; a += 0.05F) {
+    for (float b = -2.0F; b < 2.0F; b += 0.05F) {
+      cloud.push_back({8.0F, a, b});
+      cloud.push_back({a, 7.0F, b});
+      cloud.push_back({a, b, -6.0F});
+    }
+  }
+  return cloud;
+}
+
+class IntegrityRun : public testing::Test {
+ protected:
+  /// Where the ray to a surfel ends: its place times the factor; nothing for 0.
+  using Ray = std::function<float(const Surfel&, const Point&)>;
+
+  /// Every surfel is asked for at the pose T_W_H; the rays go to where the corner stands in truth, at I.
+  IntegrityReport look(const Ray& ray, const Pose& T_W_H = Pose::Identity()) {
+    std::vector<Return> returns;
+    std::vector<VisiblePoint> visible;
+    for (std::uint32_t i = 0; i < map.subset_H().size(); ++i) {
+      const Point& p = map.subset_H()[i];
+      if (const float factor = ray(map.surfels()[i], p); factor != 0.0F) {
+        returns.push_back({factor * p, 0});
+      }
+      visible.push_back({i, 0, (T_W_H * p.cast<double>()).cast<float>()});
+    }
+    std::vector<ScanView> views(1);
+    views[0].rebuild(returns, 0, Pose::Identity());
+    return Integrity().run(map, visible, T_W_H, views, reference);
+  }
+
+  [[nodiscard]] std::uint32_t planar(SurfaceClass surface) const {
+    const auto& all = map.surfels();
+    return static_cast<std::uint32_t>(std::count_if(
+        all.begin(), all.end(), [&](const Surfel& s) { return s.planar && s.surface == surface; }));
+  }
+  static const SurfaceCount& count(const IntegrityReport& report, SurfaceClass surface) {
+    return report.surfaces[static_cast<std::size_t>(surface)];
+  }
+
+  const HullMap map{corner()};
+  const Eigen::Vector3d reference{3.0, 3.0, -3.0};
+};
+
+constexpr SurfaceClass kClasses[] = {SurfaceClass::transverse, SurfaceClass::longitudinal,
+                                     SurfaceClass::horizontal};
+
+TEST_F(IntegrityRun, AScanThatFitsConfirmsEverySurfelAndAsksForNoStep) {
+  const IntegrityReport report = look([](const Surfel&, const Point&) { return 1.0F; });
+  for (const SurfaceClass surface : kClasses) {
+    ASSERT_GT(planar(surface), 40U) << "the scene has surfels to judge by";
+    EXPECT_EQ(count(report, surface).expected, planar(surface));
+    EXPECT_EQ(count(report, surface).confirmed, planar(surface));
+  }
+  EXPECT_EQ(report.expected, report.confirmed);
+  EXPECT_EQ(report.seen_through, 0U);
+  ASSERT_TRUE(report.step.solved);
+  EXPECT_LT(report.step.translation.norm(), 1e-4);
+  EXPECT_LT(report.step.rotation.norm(), 1e-5);
+}
+
+TEST_F(IntegrityRun, APoseThatIsOffIsAskedForTheStepBack) {
+  Pose T_W_H = Pose::Identity();
+  T_W_H.translation() = Eigen::Vector3d(0.06, -0.04, 0.03);
+  const IntegrityReport report = look([](const Surfel&, const Point&) { return 1.0F; }, T_W_H);
+  EXPECT_EQ(report.expected, report.confirmed);
+  ASSERT_TRUE(report.step.solved);
+  EXPECT_LT((report.step.translation + T_W_H.translation()).norm(), 2e-3);
+}
+
+TEST_F(IntegrityRun, AWallThatIsNotThereIsSeenThroughAndOnlyItsClassIsMissed) {
+  const IntegrityReport report = look([](const Surfel& surfel, const Point&) {
+    return surfel.surface == SurfaceClass::transverse ? 1.5F : 1.0F;  // ends 4 m behind the wall
+  });
+  EXPECT_EQ(count(report, SurfaceClass::transverse).expected, planar(SurfaceClass::transverse));
+  EXPECT_EQ(count(report, SurfaceClass::transverse).confirmed, 0U);
+  EXPECT_EQ(count(report, SurfaceClass::longitudinal).confirmed, planar(SurfaceClass::longitudinal));
+  EXPECT_EQ(count(report, SurfaceClass::horizontal).confirmed, planar(SurfaceClass::horizontal));
+  EXPECT_EQ(report.seen_through, planar(SurfaceClass::transverse));
+  EXPECT_FALSE(report.step.solved) << "nothing near the wall's plane tells where it is";
+  EXPECT_NE(judge_integrity(report).faults, 0);
+}
+
+TEST_F(IntegrityRun, AWallThatStandsElsewhereIsContradictedButNotSeenThrough) {
+  const IntegrityReport report = look([](const Surfel& surfel, const Point&) {
+    return surfel.surface == SurfaceClass::longitudinal ? 7.3F / 7.0F : 1.0F;  // 0.3 m farther away
+  });
+  EXPECT_EQ(count(report, SurfaceClass::longitudinal).expected, planar(SurfaceClass::longitudinal));
+  EXPECT_EQ(count(report, SurfaceClass::longitudinal).confirmed, 0U);
+  EXPECT_EQ(report.seen_through, 0U);
+}
+
+TEST_F(IntegrityRun, WhatIsHiddenSaysNothing) {
+  const IntegrityReport report = look([](const Surfel& surfel, const Point&) {
+    return surfel.surface == SurfaceClass::horizontal ? 0.5F : 1.0F;  // something 3 m in front of the deck
+  });
+  EXPECT_EQ(count(report, SurfaceClass::horizontal).expected, 0U);
+  EXPECT_EQ(report.seen_through, 0U);
+  EXPECT_EQ(report.expected, report.confirmed);
+}
+
+TEST_F(IntegrityRun, WhereNoRayEndsNothingIsExpected) {
+  const IntegrityReport report = look([](const Surfel&, const Point&) { return 0.0F; });
+  EXPECT_EQ(report.expected, 0U);
+  EXPECT_FALSE(report.step.solved);
+  EXPECT_NE(judge_integrity(report).faults, 0) << "an empty scan is never healthy";
+}
+
+TEST_F(IntegrityRun, ReturnsThatAreNoNumbersConfirmNothing) {
+  for (const float nonsense : {kNan, std::numeric_limits<float>::infinity()}) {
+    const IntegrityReport report = look([=](const Surfel&, const Point&) { return nonsense; });
+    EXPECT_EQ(report.confirmed, 0U);
+    EXPECT_NE(judge_integrity(report).faults, 0);
+  }
+}
+
+TEST_F(IntegrityRun, APoseThatIsNoNumberIsNeverHealthy) {
+  Pose T_W_H = Pose::Identity();
+  T_W_H.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  const IntegrityReport report = look([](const Surfel&, const Point&) { return 1.0F; }, T_W_H);
+  EXPECT_EQ(report.confirmed, 0U);
+  EXPECT_NE(judge_integrity(report).faults, 0);
+}
+
+}  // namespace
+}  // namespace hulltrack
