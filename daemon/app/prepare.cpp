@@ -24,8 +24,12 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
   };
   for (std::size_t i = 0; i < config.lidars.size(); ++i) {
     const LidarConfig& lidar = config.lidars[i];
-    if (const auto decoder = find_lidar_model(lidar.model)->make_decoder({}, lidar.calibration); !decoder) {
-      complain("lidar." + std::to_string(i) + ".calibration", decoder.error().message);
+    const LidarModel& model = *find_lidar_model(lidar.model);
+    const std::string key = "lidar." + std::to_string(i) + ".calibration";
+    if (!model.needs_calibration && !lidar.calibration.empty()) {
+      complain(key, lidar.model + " takes no calibration file; remove the key");
+    } else if (const auto decoder = model.make_decoder({}, lidar.calibration); !decoder) {
+      complain(key, decoder.error().message);
     }
   }
   Result<MapFile> map = read_map_file(config.map_file);

@@ -226,6 +226,16 @@ class ServiceTest(unittest.TestCase):
         self.assertEqual(service.wait(), 0)
         self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
 
+    def test_a_calibration_file_for_a_model_that_takes_none_exits_78(self):
+        self.write_config(502)
+        text = self.config.read_text(encoding="utf-8").replace("[[lidar]]\n", '[[lidar]]\ncalibration = "gone.csv"\n')
+        self.config.write_text(text, encoding="utf-8")
+        done = self.run_to_end("--check-config")
+        self.assertEqual(done.returncode, 78)
+        line = text.splitlines().index('calibration = "gone.csv"') + 1
+        self.assertIn(f"{self.config}:{line}: lidar.calibration: velodyne_vlp16 takes no calibration", done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
     def test_printed_configuration_reads_back_equal(self):
         self.write_config(502)
         printed = self.run_to_end("--print-config")
