@@ -2,7 +2,7 @@
 //
 // Rows are elevations from -90 deg, columns azimuths from -180 deg, about the z axis of the frame that
 // the point is given in (L). Cells shrink towards the poles, where no spinning LiDAR looks.
-// Pure; total on finite points (the origin falls into some cell). Cost: a few ns, no table.
+// Pure; total (the origin falls into some cell, and so does what is no number). Cost: a few ns, no table.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +49,12 @@ struct SphericalGrid {
     constexpr float kPerRadian = 180.0F / std::numbers::pi_v<float>;
     const float azimuth = fast_atan2(p.y(), p.x()) * kPerRadian + 180.0F;
     const float elevation = fast_atan2(p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y())) * kPerRadian + 90.0F;
-    return {std::clamp(static_cast<int>(elevation), 0, kRows - 1),
-            std::clamp(static_cast<int>(azimuth), 0, kColumns - 1)};
+    return {bounded(elevation, kRows), bounded(azimuth, kColumns)};
+  }
+
+  /// The whole part of `x`, from 0 to count - 1; 0 for NaN.
+  [[nodiscard]] static int bounded(float x, int count) {
+    return static_cast<int>(std::min(std::max(0.0F, x), static_cast<float>(count) - 0.5F));
   }
 };
 

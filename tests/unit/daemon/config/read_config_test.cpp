@@ -32,6 +32,14 @@ std::vector<std::string> problems(const std::string& text) {
   return lines;
 }
 
+TEST(ReadConfig, LettersOfAnyLanguageMayStandInStringsAndComments) {
+  const ConfigReading reading = parse(
+      "\xEF\xBB\xBF# K\xC3\xBC, \"3\"\n[plc]\nhost = \"plc.example\"\n[[lidar]]\nmodel = \"velodyne_vlp16\"\n"
+      "[hull]\nmap = 'k\xC3\xBC.pcd' # \xC3\xBC\n");
+  ASSERT_TRUE(reading.problems.empty()) << to_string(reading.problems.front());
+  EXPECT_EQ(reading.config->map_file, "/site/k\xC3\xBC.pcd");
+}
+
 TEST(ReadConfig, TheRequiredKeysAreEnough) {
   const auto reading = parse(kLeast);
   ASSERT_TRUE(reading.config) << ::testing::PrintToString(problems(kLeast));
@@ -331,17 +339,22 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Syntax, WrongConfig,
-    ::testing::Values(Wrong{"key_twice", plc("port = 1\nport = 2\n"), ":3: TOML syntax", "may be given once"},
-                      Wrong{"section_twice", other("[log]\n[log]\n"), ":2: TOML syntax", "may be given once"},
-                      Wrong{"no_value", plc("port =\n"), ":2: TOML syntax", "expected value"},
-                      Wrong{"open_text", plc("# fine\nhost2 = \"abc\n"), ":3: TOML syntax", "string"},
-                      Wrong{"open_table", read("slew = { offset = 1\n"), ":2: TOML syntax", "inline table"},
-                      Wrong{"header_without_a_name", "# one\n[= 1\n" + kPlc, ":2: TOML syntax", "key"},
-                      Wrong{"bad_utf8", "# \xC3\n" + kPlc, ":1: TOML syntax", "utf-8"},
-                      Wrong{"beyond_64_bits", other("[health]\nmin_matched = 99999999999999999999\n"),
-                            ":2: TOML syntax", "99999999999999999999"},
-                      Wrong{"long_line", "# one\n#" + std::string(5000, 'x') + "\n", ":2",
-                            "longer than 4096 characters"}),
+    ::testing::Values(
+        Wrong{"key_twice", plc("port = 1\nport = 2\n"), ":3: TOML syntax", "may be given once"},
+        Wrong{"section_twice", other("[log]\n[log]\n"), ":2: TOML syntax", "may be given once"},
+        Wrong{"no_value", plc("port =\n"), ":2: TOML syntax", "expected value"},
+        Wrong{"open_text", plc("# fine\nhost2 = \"abc\n"), ":3: TOML syntax", "string"},
+        Wrong{"open_table", read("slew = { offset = 1\n"), ":2: TOML syntax", "inline table"},
+        Wrong{"header_without_a_name", "# one\n[= 1\n" + kPlc, ":2: TOML syntax", "key"},
+        Wrong{"bad_utf8", "# \xC3\n" + kPlc, ":1: TOML syntax", "utf-8"},
+        Wrong{"beyond_64_bits", other("[health]\nmin_matched = 99999999999999999999\n"), ":2: TOML syntax",
+              "99999999999999999999"},
+        Wrong{"umlaut_in_a_key", plc("schl\xC3\xBCssel = 1\n"), ":2", "a letter that is not ASCII"},
+        Wrong{"umlaut_after_a_string", plc("host2 = \"a\\\"b\" \xC3\xBC\n"), ":2",
+              "a letter that is not ASCII"},
+        Wrong{"accent_alone", "\xCD\xA0", ":1", "a letter that is not ASCII"},
+        Wrong{"string_of_several_lines", plc("host2 = \"\"\"\na\"\"\"\n"), ":2", "a string of several lines"},
+        Wrong{"long_line", "# one\n#" + std::string(5000, 'x') + "\n", ":2", "longer than 4096 characters"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
