@@ -20,6 +20,20 @@ constexpr int kMaxBackwardStep = 10;
 /// A step this far from the packet's median is still the same rotation, 0.01 deg.
 constexpr int kMinStepTolerance = 3;
 
+/// A direction in the plane.
+struct Heading {
+  double cos, sin;
+
+  /// Turned on by a small angle, rad. Below 0.03 (the rotor's way during a block, at most) the series are
+  /// true to 3e-10, far below a micrometre at any range, at a fifth of the cost of sine and cosine.
+  [[nodiscard]] Heading turned(double angle) const {
+    const double square = angle * angle;
+    const double s = angle * (1.0 - square / 6.0);
+    const double c = 1.0 - square * (0.5 - square / 24.0);
+    return {cos * c - sin * s, sin * c + cos * s};
+  }
+};
+
 double centidegrees_to_rad(double value) { return radians(value * 0.01); }
 
 ReturnMode return_mode_of(std::uint8_t code) {
@@ -81,8 +95,9 @@ VelodyneDecoder::VelodyneDecoder(const ModelTable& model, const DecoderOptions& 
   for (std::size_t k = 0; k < kSlots; ++k) {
     const Slot& slot = model.slots[k];
     const double elevation = radians(slot.elevation_deg);
-    beams_[k] = {std::cos(elevation), std::sin(elevation), radians(slot.azimuth_offset_deg),
-                 options.vertical_offset ? slot.vertical_offset_m : 0.0,
+    const double azimuth = radians(slot.azimuth_offset_deg);
+    beams_[k] = {std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth),
+                 std::sin(elevation), options.vertical_offset ? slot.vertical_offset_m : 0.0,
                  options.firing_correction ? static_cast<double>(slot.time.count()) / period : 0.0};
   }
 }
@@ -191,6 +206,7 @@ void VelodyneDecoder::emit_block(std::span<const std::uint8_t> payload, std::siz
   const std::size_t group = block / rotation.blocks_per_group;
   const bool second_of_pair = block % rotation.blocks_per_group == 1;
   const double azimuth = centidegrees_to_rad(rotation.azimuth[group]);
+  const Heading first_firing{std::cos(azimuth), std::sin(azimuth)};
   const double advance = centidegrees_to_rad(rotation.advance[group]);
   const Nanoseconds block_time = rotation.time[group] - rotation.duration;
   const std::size_t slots = block * kBlockBytes + kBlockHeaderBytes;
@@ -202,13 +218,12 @@ void VelodyneDecoder::emit_block(std::span<const std::uint8_t> payload, std::siz
     if (first_echo == raw && !options_.repeated_echoes) continue;
 
     const Beam& beam = beams_[k];
-    const double turn = azimuth + advance * beam.fraction_of_period + beam.azimuth_offset;
+    const Heading turn = first_firing.turned(advance * beam.fraction_of_period);
     const double range = raw * model_.distance_unit;
-    const double level = range * beam.cos_elevation;
     LidarPoint& point = out.points.emplace_back();
-    point.x = static_cast<float>(level * std::cos(turn));
-    point.y = static_cast<float>(-level * std::sin(turn));
-    point.z = static_cast<float>(range * beam.sin_elevation + beam.vertical_offset);
+    point.x = static_cast<float>(range * (turn.cos * beam.forward + turn.sin * beam.left));
+    point.y = static_cast<float>(range * (turn.cos * beam.left - turn.sin * beam.forward));
+    point.z = static_cast<float>(range * beam.up + beam.vertical_offset);
     point.dt_ns = static_cast<std::int32_t>((block_time + model_.slots[k].time).count());
     point.intensity = payload[at + 2];
     point.channel = model_.slots[k].channel;

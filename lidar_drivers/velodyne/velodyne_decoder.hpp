@@ -27,9 +27,7 @@ class VelodyneDecoder final : public Decoder {
  private:
   /// What the lasers' tables come to, ready for the inner loop.
   struct Beam {
-    double cos_elevation;
-    double sin_elevation;
-    double azimuth_offset;      // rad
+    double forward, left, up;   // unit vector in L at azimuth 0
     double vertical_offset;     // m, 0 when switched off
     double fraction_of_period;  // of the block's azimuth step, 0 when firing correction is off
   };
