@@ -1,6 +1,7 @@
 #include "core/filter/voxel_filter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
 
@@ -10,6 +11,9 @@ namespace {
 constexpr std::uint32_t kNoVoxel = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t kEmptyKey = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t kFirstTableSize = 1024;
+
+// Points whose places in the table are fetched ahead of their turn.
+constexpr std::size_t kBlock = 64;
 
 constexpr float kReach = 1048576.0F;  // voxels from the origin along each axis: 21 bits with the sign
 constexpr int kAxisBits = 21;
@@ -84,19 +88,21 @@ std::span<const std::uint32_t> VoxelFilter::select(std::span<const Point> cloud)
   keys_.clear();
   voxel_of_point_.resize(cloud.size());
 
-  std::uint64_t last_key = kEmptyKey;
-  std::uint32_t last_voxel = kNoVoxel;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const std::uint64_t key = key_of(cloud[i], inverse_size_);
-    if (key != last_key) {  // a scan's next point is often in the same voxel
-      last_key = key;
-      last_voxel = key == kEmptyKey ? kNoVoxel : voxel_of(key);
+  std::array<std::uint64_t, kBlock> keys;
+  for (std::size_t first = 0; first < cloud.size(); first += kBlock) {
+    const std::span<const Point> block = cloud.subspan(first, std::min(kBlock, cloud.size() - first));
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      keys[i] = key_of(block[i], inverse_size_);
+      __builtin_prefetch(&table_[hash(keys[i]) & (table_.size() - 1)]);
     }
-    voxel_of_point_[i] = last_voxel;
-    if (last_voxel != kNoVoxel) {
-      Voxel& voxel = voxels_[last_voxel];
-      voxel.centroid += cloud[i].cast<double>();  // the sum until all points are in
-      voxel.count += 1.0;
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const std::uint32_t at = keys[i] == kEmptyKey ? kNoVoxel : voxel_of(keys[i]);
+      voxel_of_point_[first + i] = at;
+      if (at != kNoVoxel) {
+        Voxel& voxel = voxels_[at];
+        voxel.centroid += block[i].cast<double>();  // the sum until all points are in
+        voxel.count += 1.0;
+      }
     }
   }
 
