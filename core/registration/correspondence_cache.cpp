@@ -84,8 +84,10 @@ void CorrespondenceCache::place_source(const Pose& T_target_source) {
 // Answers what can be answered from the last searches, lists the others in unknown_.
 void CorrespondenceCache::look_up() {
   const float squared_gate = gate_ * gate_;
+  const float farthest = gate_ * (1.0F + kMargin);
   unknown_.clear();
   queries_.clear();
+  radii_.clear();
   for (std::size_t i = 0; i < source_.size(); ++i) {
     const Entry& entry = entries_[i];
     const Point q = places_[i].cast<float>();
@@ -97,14 +99,16 @@ void CorrespondenceCache::look_up() {
     if (!known) {
       unknown_.push_back(static_cast<std::uint32_t>(i));
       queries_.push_back(q);
+      // The nearest one is at most as far away as the one known, which bounds the search from its start.
+      const float bound = std::sqrt(nearest_[i].squared_distance) + kNeighbourMargin;
+      radii_.push_back(std::min(bound, farthest));
     }
   }
 }
 
 void CorrespondenceCache::search_unknown() {
   answers_.resize(std::max(answers_.size(), queries_.size()));
-  target_->neighbourhoods(queries_, gate_ * (1.0F + kMargin), margin_,
-                          std::span(answers_).first(queries_.size()));
+  target_->neighbourhoods(queries_, radii_, margin_, std::span(answers_).first(queries_.size()));
   for (std::size_t u = 0; u < unknown_.size(); ++u) {
     Entry& entry = entries_[unknown_[u]];
     entry.near = answers_[u];

@@ -67,6 +67,7 @@ class CorrespondenceCache {
   std::vector<Nearest> nearest_;         // per source point
   std::vector<std::uint32_t> unknown_;   // source points to be searched for
   std::vector<Point> queries_;           // per unknown
+  std::vector<float> radii_;             // per unknown: how far to search, m
   std::vector<Neighbourhood> answers_;   // per unknown
   float margin_ = 0.0F;                  // of the searches of this round, m
   std::vector<Correspondence> pairs_;

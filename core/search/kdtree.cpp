@@ -10,7 +10,7 @@ namespace hulltrack {
 namespace {
 
 template <typename T>
-std::size_t bytes(const std::vector<T>& v) {
+std::size_t bytes(const LargeArray<T>& v) {
   return v.capacity() * sizeof(T);
 }
 
@@ -27,8 +27,9 @@ const Kernels& best_kernels() { return avx2_available() ? avx2_kernels() : sse2_
 
 }  // namespace kdtree
 
-KdTree::KdTree(std::span<const Point> cloud)
-    : impl_(std::make_unique<const Impl>(Impl{kdtree::build(cloud)})) {}
+KdTree::KdTree(std::span<const Point> cloud, TreeUse use)
+    : impl_(std::make_unique<const Impl>(
+          Impl{use == TreeUse::many_searches ? kdtree::build(cloud) : kdtree::build_along_curve(cloud)})) {}
 KdTree::~KdTree() = default;
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
@@ -66,10 +67,10 @@ void KdTree::nearest_k(const Point& query, std::size_t k, float radius, std::vec
   }
 }
 
-void KdTree::neighbourhoods(std::span<const Point> queries, float radius, float margin,
+void KdTree::neighbourhoods(std::span<const Point> queries, std::span<const float> radii, float margin,
                             std::span<Neighbourhood> out) const {
-  assert(out.size() == queries.size());
-  impl_->kernels.neighbourhoods(impl_->layout, queries, radius, margin, out.data());
+  assert(radii.size() == queries.size() && out.size() == queries.size());
+  impl_->kernels.neighbourhoods(impl_->layout, queries, radii.data(), margin, out.data());
 }
 
 std::size_t KdTree::size() const { return impl_->layout.size; }

@@ -1,52 +1,18 @@
 #include "core/search/kdtree_build.hpp"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
-#include <limits>
+
+#include "core/search/kdtree_parts.hpp"
 
 namespace hulltrack::kdtree {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Below this many points a comparison select is used: a histogram has little to count.
 constexpr std::size_t kSmallRange = 192;
 // More bins than this no longer fit the first-level cache beside the points.
 constexpr std::size_t kMaxBins = 1024;
-
-struct alignas(16) Element {
-  std::array<float, 3> position;
-  std::uint32_t index;
-};
-
-struct Bounds {
-  std::array<float, 4> min{kInfinity, kInfinity, kInfinity, 0.0F};
-  std::array<float, 4> max{-kInfinity, -kInfinity, -kInfinity, 0.0F};
-
-  [[nodiscard]] std::size_t longest_axis() const {
-    const std::array<float, 3> side{max[0] - min[0], max[1] - min[1], max[2] - min[2]};
-    return static_cast<std::size_t>(std::max_element(side.begin(), side.end()) - side.begin());
-  }
-};
-
-// The fourth lane carries the index's bits along; nobody reads it.
-Bounds bounds_of(std::span<const Element> range) {
-  Bounds bounds;
-  __m128 low = _mm_loadu_ps(bounds.min.data());
-  __m128 high = _mm_loadu_ps(bounds.max.data());
-  for (const Element& e : range) {
-    const __m128 p = _mm_load_ps(e.position.data());
-    low = _mm_min_ps(p, low);
-    high = _mm_max_ps(p, high);
-  }
-  _mm_storeu_ps(bounds.min.data(), low);
-  _mm_storeu_ps(bounds.max.data(), high);
-  return bounds;
-}
 
 // Points on their way into the tree: they stand in `here`, and `spare` has room for as many.
 struct Range {
@@ -154,13 +120,8 @@ class Builder {
   };
 
   std::uint32_t add_nodes(std::size_t count) {
-    Node empty;
-    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
-      empty.min_x[lane] = empty.min_y[lane] = empty.min_z[lane] = kInfinity;
-      empty.max_x[lane] = empty.max_y[lane] = empty.max_z[lane] = -kInfinity;
-    }
     const auto first = static_cast<std::uint32_t>(layout_.nodes.size());
-    layout_.nodes.resize(first + count, empty);
+    layout_.nodes.resize(first + count);
     layout_.first_child.resize(first + count);
     return first;
   }
@@ -169,13 +130,11 @@ class Builder {
   void build_node(std::uint32_t node, const Range& range, std::size_t child_leaves) {
     Children children;
     divide(range, (range.leaves + child_leaves - 1) / child_leaves, children);
-    for (std::size_t lane = 0; lane < children.count; ++lane) {
-      set_box(layout_.nodes[node], lane, children.bounds[lane]);
-    }
+    layout_.nodes[node] = node_of(std::span(children.bounds).first(children.count));
     if (child_leaves == 1) {
       layout_.first_child[node] = static_cast<std::uint32_t>(layout_.leaves.size()) | kLeafFlag;
       for (std::size_t lane = 0; lane < children.count; ++lane) {
-        add_leaf(children.range[lane].here);
+        add_leaf(children.range[lane].here, layout_);
       }
       return;
     }
@@ -204,32 +163,8 @@ class Builder {
            parts - left_parts, children);
   }
 
-  static void set_box(Node& node, std::size_t lane, const Bounds& bounds) {
-    node.min_x[lane] = bounds.min[0];
-    node.min_y[lane] = bounds.min[1];
-    node.min_z[lane] = bounds.min[2];
-    node.max_x[lane] = bounds.max[0];
-    node.max_y[lane] = bounds.max[1];
-    node.max_z[lane] = bounds.max[2];
-  }
-
-  void add_leaf(std::span<const Element> points) {
-    assert(points.size() <= kLeafSize);
-    Leaf& leaf = layout_.leaves.emplace_back();
-    std::fill_n(leaf.x, kLeafSize, kInfinity);
-    std::fill_n(leaf.y, kLeafSize, kInfinity);
-    std::fill_n(leaf.z, kLeafSize, kInfinity);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      leaf.x[i] = points[i].position[0];
-      leaf.y[i] = points[i].position[1];
-      leaf.z[i] = points[i].position[2];
-      layout_.index.push_back(points[i].index);
-    }
-    layout_.index.resize(layout_.leaves.size() * kLeafSize, std::numeric_limits<std::uint32_t>::max());
-  }
-
-  std::vector<Element> points_;
-  std::vector<Element> spare_;
+  LargeArray<Element> points_;
+  LargeArray<Element> spare_;
   Layout layout_;
 };
 

@@ -8,7 +8,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+
+#include "core/search/huge_pages.hpp"
 
 namespace hulltrack::kdtree {
 
@@ -39,11 +40,11 @@ struct alignas(kCacheLine) Leaf {
 
 /// Node 0 is the root; no nodes = empty tree. A slot is leaf * kLeafSize + position in the leaf.
 struct Layout {
-  std::vector<Node> nodes;
-  std::vector<std::uint32_t> first_child;  // per node: its first child's index, with kLeafFlag for leaves
-  std::vector<Leaf> leaves;
-  std::vector<std::uint32_t> index;  // per slot: index into the cloud
-  std::size_t size = 0;              // points
+  LargeArray<Node> nodes;
+  LargeArray<std::uint32_t> first_child;  // per node: its first child's index, with kLeafFlag for leaves
+  LargeArray<Leaf> leaves;
+  LargeArray<std::uint32_t> index;  // per slot: index into the cloud
+  std::size_t size = 0;             // points
 };
 
 }  // namespace hulltrack::kdtree

@@ -6,7 +6,7 @@
 // Internal to core/search. Thread rule: pure functions on an immutable layout. No failure.
 #pragma once
 
-#include <cmath>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -26,8 +26,11 @@ struct Hit {
 };
 
 /// The largest float below radius^2: turns "distance < radius" into the searches' "squared <= limit".
+/// Neighbouring positive floats have neighbouring bit patterns.
 [[nodiscard]] inline float limit_below(float radius) {
-  return radius > 0.0F ? std::nextafter(radius * radius, 0.0F) : -1.0F;
+  const float squared = radius * radius;
+  return radius > 0.0F && squared > 0.0F ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(squared) - 1)
+                                         : -1.0F;
 }
 
 struct Kernels {
@@ -37,8 +40,8 @@ struct Kernels {
   void (*nearest)(const Layout& layout, std::span<const Point> queries, float limit, Hit* hits);
 
   /// As KdTree::neighbourhoods.
-  void (*neighbourhoods)(const Layout& layout, std::span<const Point> queries, float radius, float margin,
-                         Neighbourhood* out);
+  void (*neighbourhoods)(const Layout& layout, std::span<const Point> queries, const float* radii,
+                         float margin, Neighbourhood* out);
 
   /// The nearest hits.size() points with squared distance <= limit, nearest first, ties by index; returns
   /// how many there are.

@@ -60,10 +60,11 @@ struct LeafDistances {
   }
 };
 
-// An opened node: how far away its children are that are still to be visited.
+// An opened node with children that are still to be visited.
 struct alignas(32) Frame {
-  float squared_distance[kFanOut];  // infinity: no such child, or visited
+  float squared_distance[kFanOut];
   std::uint32_t first_child;
+  std::uint32_t pending;  // one bit a child
 };
 
 HULLTRACK_TARGET inline bool is_searchable(const Layout& layout, const Point& query) {
@@ -92,10 +93,11 @@ struct Search {
   Collector found;
   Frame frames[kMaxHeight];
 
-  HULLTRACK_TARGET void start(std::size_t query_number, const Point& from, const Collector& empty) {
+  HULLTRACK_TARGET void start(std::size_t query_number, const Point& from,
+                              const typename Collector::Task& task) {
     query = from;
     number = query_number;
-    found = empty;
+    found.start(task, query_number);
     depth = 0;
     next = 0;
   }
@@ -103,33 +105,88 @@ struct Search {
   // Visits one node or leaf, then chooses and fetches the next; false when nothing is left.
   HULLTRACK_TARGET bool step(const Layout& layout) {
     const Query q = broadcast(query);
-    if ((next & kLeafFlag) != 0) {
-      found.scan(layout, q, next & ~kLeafFlag);
-    } else {
-      Frame& frame = frames[depth++];
-      frame.first_child = layout.first_child[next];
-      for (std::size_t i = 0; i < kFanOut; i += kLanes) {
-        store(frame.squared_distance + i, squared_distance(q, layout.nodes[next], i));
-      }
+    if ((next & kLeafFlag) == 0) {
+      return open(layout, q) || back_up(layout);
     }
-    return choose_next(layout);
+    found.scan(layout, q, next & ~kLeafFlag);
+    return back_up(layout);
   }
 
-  // The nearest child of the deepest node that has one within the limit.
-  HULLTRACK_TARGET bool choose_next(const Layout& layout) {
-    for (; depth > 0; --depth) {
+  // Goes on to the nearest child of node `next` that lies within the limit; false if there is none.
+  HULLTRACK_TARGET bool open(const Layout& layout, const Query& q) {
+    const Lanes low = squared_distance(q, layout.nodes[next], 0);
+    const Lanes high = squared_distance(q, layout.nodes[next], kLanes);
+    const std::uint32_t within = within_limit(low, high);
+    if (within == 0) {
+      return false;
+    }
+    const Lanes least = broadcast(smallest(min(low, high)));
+    const auto child =
+        static_cast<std::uint32_t>(__builtin_ctz(at_most(low, least) | (at_most(high, least) << kLanes)));
+    const std::uint32_t first_child = layout.first_child[next];
+    const std::uint32_t pending = within & ~(1U << child);
+    if (pending != 0) {
+      Frame& frame = frames[depth++];
+      store(frame.squared_distance, low);
+      store(frame.squared_distance + kLanes, high);
+      frame.first_child = first_child;
+      frame.pending = pending;
+    }
+    next = first_child + child;
+    prefetch(layout, next);
+    return true;
+  }
+
+  // Goes on to the nearest pending child of the deepest node that has one within the limit.
+  HULLTRACK_TARGET bool back_up(const Layout& layout) {
+    while (depth > 0) {
       Frame& frame = frames[depth - 1];
-      const Lanes low = load(frame.squared_distance);
-      const Lanes high = load(frame.squared_distance + kLanes);
-      const float least = smallest(min(low, high));
-      if (least <= found.limit) {
-        const Lanes l = broadcast(least);
-        const int child = __builtin_ctz(at_most(low, l) | (at_most(high, l) << kLanes));
-        frame.squared_distance[child] = __builtin_inff();
-        next = frame.first_child + static_cast<std::uint32_t>(child);
-        prefetch(layout, next);
+      const std::uint32_t within =
+          frame.pending & within_limit(load(frame.squared_distance), load(frame.squared_distance + kLanes));
+      if (within == 0) {
+        --depth;
+        continue;
+      }
+      auto child = static_cast<std::uint32_t>(__builtin_ctz(within));
+      for (std::uint32_t rest = within & (within - 1); rest != 0; rest &= rest - 1) {
+        const auto other = static_cast<std::uint32_t>(__builtin_ctz(rest));
+        child = frame.squared_distance[other] < frame.squared_distance[child] ? other : child;
+      }
+      frame.pending = within & ~(1U << child);
+      depth -= frame.pending == 0 ? 1 : 0;
+      next = frame.first_child + child;
+      prefetch(layout, next);
+      return true;
+    }
+    return false;
+  }
+
+  HULLTRACK_TARGET std::uint32_t within_limit(Lanes low, Lanes high) const {
+    const Lanes limit = broadcast(found.limit);
+    return at_most(low, limit) | (at_most(high, limit) << kLanes);
+  }
+};
+
+// The queries of a batch one after the other; those that nothing can be near are answered on the way.
+template <typename Collector, typename Out>
+struct Batch {
+  const Layout& layout;
+  std::span<const Point> queries;
+  const typename Collector::Task& task;
+  Out* out;
+  std::size_t next = 0;
+
+  // Sets `search` on the next query; false when there are no more.
+  HULLTRACK_TARGET bool start_next(Search<Collector>& search) {
+    for (; next < queries.size(); ++next) {
+      if (is_searchable(layout, queries[next])) {
+        search.start(next, queries[next], task);
+        ++next;
         return true;
       }
+      Collector none;
+      none.start(task, next);
+      none.finish(layout, out[next]);
     }
     return false;
   }
@@ -138,27 +195,22 @@ struct Search {
 // Steps several searches in turn, so that each one's memory arrives while the others compute.
 template <typename Collector, typename Out>
 HULLTRACK_TARGET inline void search_all(const Layout& layout, std::span<const Point> queries,
-                                        const Collector& empty, Out* out) {
+                                        const typename Collector::Task& task, Out* out) {
+  Batch<Collector, Out> batch{layout, queries, task, out};
   Search<Collector> active[kInterleaved];
   std::size_t running = 0;
-  std::size_t next = 0;
-  while (next < queries.size() || running > 0) {
-    for (; running < kInterleaved && next < queries.size(); ++next) {
-      if (is_searchable(layout, queries[next])) {
-        active[running++].start(next, queries[next], empty);
-      } else {
-        Collector none = empty;
-        none.finish(layout, out[next]);
-      }
-    }
-    for (std::size_t i = 0; i < running;) {
+  while (running < kInterleaved && batch.start_next(active[running])) {
+    ++running;
+  }
+  while (running > 0) {
+    for (std::size_t i = running;
+         i-- > 0;) {  // from the back: the last one may take the place of a finished one
       if (active[i].step(layout)) {
-        ++i;
         continue;
       }
       active[i].found.finish(layout, out[active[i].number]);
-      if (--running > i) {
-        active[i] = active[running];
+      if (!batch.start_next(active[i])) {
+        active[i] = active[--running];
       }
     }
   }
@@ -168,10 +220,22 @@ HULLTRACK_TARGET inline std::uint32_t first_slot(std::uint32_t leaf) {
   return leaf * static_cast<std::uint32_t>(kLeafSize);
 }
 
+// A collector gathers what one search is for. Its Task says what is asked of all queries of a batch, its
+// limit is the tightest bound so far (inclusive, m^2): farther away nothing is of interest.
+
 // The nearest point.
 struct NearestCollector {
+  struct Task {
+    float limit;
+  };
+
   float limit;
-  std::uint32_t slot = kNoSlot;
+  std::uint32_t slot;
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t) {
+    limit = task.limit;
+    slot = kNoSlot;
+  }
 
   HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
     const LeafDistances distances(q, layout.leaves[leaf]);
@@ -221,11 +285,23 @@ struct NeighbourhoodCollector {
   static constexpr std::size_t kFew = Neighbourhood::kCapacity;
   static constexpr std::size_t kRoom = kFew + kLeafSize;
 
-  float limit;   // the tightest bound so far, inclusive, m^2
-  float margin;  // m
+  struct Task {
+    const float* radii;  // per query, m
+    float margin;        // m
+  };
+
+  float limit;
+  float margin;
   float clear_radius;
-  std::uint32_t count = 0;
+  std::uint32_t count;
   Hit hits[kRoom];
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t query) {
+    clear_radius = task.radii[query];
+    limit = limit_below(clear_radius);
+    margin = task.margin;
+    count = 0;
+  }
 
   HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
     const LeafDistances distances(q, layout.leaves[leaf]);
@@ -293,9 +369,20 @@ struct NeighbourhoodCollector {
 
 // The nearest k points, nearest first.
 struct KNearestCollector {
+  struct Task {
+    float limit;
+    std::span<Hit> hits;
+  };
+
   float limit;
   std::span<Hit> hits;
-  std::size_t count = 0;
+  std::size_t count;
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t) {
+    limit = task.limit;
+    hits = task.hits;
+    count = 0;
+  }
 
   HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
     const LeafDistances distances(q, layout.leaves[leaf]);
@@ -312,16 +399,12 @@ struct KNearestCollector {
 };
 
 HULLTRACK_TARGET void nearest(const Layout& layout, std::span<const Point> queries, float limit, Hit* hits) {
-  search_all(layout, queries, NearestCollector{limit}, hits);
+  search_all<NearestCollector>(layout, queries, {limit}, hits);
 }
 
-HULLTRACK_TARGET void neighbourhoods(const Layout& layout, std::span<const Point> queries, float radius,
+HULLTRACK_TARGET void neighbourhoods(const Layout& layout, std::span<const Point> queries, const float* radii,
                                      float margin, Neighbourhood* out) {
-  NeighbourhoodCollector empty;
-  empty.limit = limit_below(radius);
-  empty.margin = margin;
-  empty.clear_radius = radius;
-  search_all(layout, queries, empty, out);
+  search_all<NeighbourhoodCollector>(layout, queries, {radii, margin}, out);
 }
 
 HULLTRACK_TARGET std::size_t nearest_k(const Layout& layout, const Point& query, float limit,

@@ -90,7 +90,7 @@ void expect_batches_equal_brute_force(const KdTree& tree, const Cloud& cloud, co
   for (const float radius : {0.3F, kInfinity}) {
     tree.nearest(queries, radius, nearest);
     for (const float margin : {0.0F, 0.02F, 0.5F}) {
-      tree.neighbourhoods(queries, radius, margin, near);
+      tree.neighbourhoods(queries, std::vector<float>(queries.size(), radius), margin, near);
       for (std::size_t i = 0; i < queries.size(); ++i) {
         const std::vector<Neighbour> expected = brute_force(cloud, queries[i], radius);
         ASSERT_EQ(nearest[i].index, expected.empty() ? Neighbour::kNone : expected.front().index);
@@ -100,8 +100,7 @@ void expect_batches_equal_brute_force(const KdTree& tree, const Cloud& cloud, co
   }
 }
 
-void expect_equals_brute_force(const Cloud& cloud, const Cloud& queries) {
-  const KdTree tree(cloud);
+void expect_equals_brute_force(const KdTree& tree, const Cloud& cloud, const Cloud& queries) {
   std::vector<Neighbour> few;
   for (const Point& q : queries) {
     for (const float radius : {0.05F, 0.3F, 2.0F, kInfinity}) {
@@ -123,6 +122,12 @@ void expect_equals_brute_force(const Cloud& cloud, const Cloud& queries) {
     }
   }
   expect_batches_equal_brute_force(tree, cloud, queries);
+}
+
+void expect_equals_brute_force(const Cloud& cloud, const Cloud& queries) {
+  for (const TreeUse use : {TreeUse::many_searches, TreeUse::one_batch}) {
+    ASSERT_NO_FATAL_FAILURE(expect_equals_brute_force(KdTree(cloud, use), cloud, queries));
+  }
 }
 
 TEST(KdTree, NearestDistanceEqualsBruteForce) {
@@ -175,6 +180,7 @@ TEST(KdTree, LeavesOutPointsThatAreNotFiniteAndKeepsIndices) {
     cloud[i][static_cast<Eigen::Index>(i % 3)] = i % 2 == 0 ? kNan : kInfinity;
   }
   EXPECT_EQ(KdTree(cloud).size(), 200U);
+  EXPECT_EQ(KdTree(cloud, TreeUse::one_batch).size(), 200U);
   expect_equals_brute_force(cloud, random_cloud(50, Point(3.0F, 3.0F, 3.0F), 14));
 }
 
@@ -183,11 +189,13 @@ TEST(KdTree, AnswersNothingWhereNothingCanBe) {
   const Cloud one{Point::Zero()};
   std::vector<Neighbour> few{{1, 1.0F}};
   for (const Cloud& cloud : {Cloud{}, all_nan}) {
-    const KdTree tree(cloud);
-    EXPECT_EQ(tree.size(), 0U);
-    EXPECT_FALSE(tree.nearest(Point::Zero(), kInfinity));
-    tree.nearest_k(Point::Zero(), 3, kInfinity, few);
-    EXPECT_TRUE(few.empty());
+    for (const TreeUse use : {TreeUse::many_searches, TreeUse::one_batch}) {
+      const KdTree tree(cloud, use);
+      EXPECT_EQ(tree.size(), 0U);
+      EXPECT_FALSE(tree.nearest(Point::Zero(), kInfinity));
+      tree.nearest_k(Point::Zero(), 3, kInfinity, few);
+      EXPECT_TRUE(few.empty());
+    }
   }
   const KdTree tree(one);
   for (const Point& q :
@@ -225,8 +233,9 @@ TEST(KdTree, EveryInstructionSetGivesTheSameBits) {
 
   std::vector<Neighbourhood> a_near(queries.size());
   std::vector<Neighbourhood> b_near(queries.size());
-  sse2.neighbourhoods(layout, queries, 0.5F, 0.1F, a_near.data());
-  avx2.neighbourhoods(layout, queries, 0.5F, 0.1F, b_near.data());
+  const std::vector<float> radii(queries.size(), 0.5F);
+  sse2.neighbourhoods(layout, queries, radii.data(), 0.1F, a_near.data());
+  avx2.neighbourhoods(layout, queries, radii.data(), 0.1F, b_near.data());
   for (std::size_t i = 0; i < queries.size(); ++i) {
     ASSERT_EQ(a_near[i].count, b_near[i].count);
     ASSERT_EQ(a_near[i].clear_radius, b_near[i].clear_radius);
@@ -246,15 +255,17 @@ TEST(KdTree, EveryInstructionSetGivesTheSameBits) {
 
 TEST(KdTree, LeavesAreFullAndHoldEveryPointOnce) {
   for (const std::size_t size : {1U, 40U, 5000U, 70000U}) {
-    const kdtree::Layout layout = kdtree::build(random_cloud(size, Point(30.0F, 20.0F, 1.0F), 17));
-    EXPECT_EQ(layout.leaves.size(), (size + kdtree::kLeafSize - 1) / kdtree::kLeafSize);
-    std::vector<int> seen(size, 0);
-    for (const std::uint32_t index : layout.index) {
-      if (index != std::numeric_limits<std::uint32_t>::max()) {
-        ++seen.at(index);
+    const Cloud cloud = random_cloud(size, Point(30.0F, 20.0F, 1.0F), 17);
+    for (const kdtree::Layout& layout : {kdtree::build(cloud), kdtree::build_along_curve(cloud)}) {
+      EXPECT_EQ(layout.leaves.size(), (size + kdtree::kLeafSize - 1) / kdtree::kLeafSize);
+      std::vector<int> seen(size, 0);
+      for (const std::uint32_t index : layout.index) {
+        if (index != std::numeric_limits<std::uint32_t>::max()) {
+          ++seen.at(index);
+        }
       }
+      EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(size));
     }
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(size));
   }
 }
 
