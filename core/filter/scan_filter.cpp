@@ -16,7 +16,10 @@ ScanFilter::ScanFilter(const MachineConfig& machine, std::vector<SensorConfig> s
     : machine_(machine), sensors_(std::move(sensors)), region_W_(region_W) {}
 
 void ScanFilter::run(const Scan& scan, const JointHistory& joints, FilteredScan& out) const {
-  out.returns.clear();
+  out.returns_W.resize(sensors_.size());
+  for (Cloud& returns : out.returns_W) {
+    returns.clear();
+  }
   out.hull_W.clear();
   out.segments_left_out = 0;
   for (const ScanSegment& segment : scan.segments) {
@@ -41,6 +44,7 @@ void ScanFilter::run_segment(std::span<const LidarPoint> points, std::uint16_t l
   // The rotation in float is exact to 1e-7 of the range: 12 um at 100 m.
   const Eigen::Matrix3f R = T_W_L.linear().cast<float>();
   const Point t = T_W_L.translation().cast<float>();
+  Cloud& returns_W = out.returns_W[lidar];
   for (const LidarPoint& point : points) {
     const Point p_L(point.x, point.y, point.z);
     const float range2 = p_L.squaredNorm();
@@ -48,7 +52,7 @@ void ScanFilter::run_segment(std::span<const LidarPoint> points, std::uint16_t l
       continue;
     }
     const Point p_W = R * p_L + t;
-    out.returns.push_back({p_W, lidar});
+    returns_W.push_back(p_W);
     if (!inside_any(sensor.exclude, p_L) && (!region_W_ || region_W_->contains(p_W))) {
       out.hull_W.push_back(p_W);
     }

@@ -29,15 +29,9 @@ struct SensorConfig {
   std::vector<Box> exclude;       // in L: the machine's own chute and boom
 };
 
-/// A return with valid range, whether or not it may be hull.
-struct Return {
-  Point p_W;
-  std::uint16_t lidar;
-};
-
 struct FilteredScan {
-  std::vector<Return> returns;  // all of valid range: what the sensors really saw
-  Cloud hull_W;                 // the candidates for hull, full resolution
+  std::vector<Cloud> returns_W;  // per LiDAR all of valid range, hull or not: what it really saw
+  Cloud hull_W;                  // the candidates for hull, full resolution
   std::uint32_t segments_left_out = 0;
 };
 

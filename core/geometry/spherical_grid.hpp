@@ -8,24 +8,27 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 
 #include "core/geometry/cloud.hpp"
 
 namespace hulltrack {
 
-/// atan2 to 1e-5 rad (Abramowitz & Stegun 4.4.49 on the smaller octant), several times as fast.
+/// atan2 to 1e-5 rad (Abramowitz & Stegun 4.4.49 on the smaller octant), several times as fast. Without
+/// branches, so that a loop over it can be vectorised. fast_atan2(0, 0) = 0.
 [[nodiscard]] inline float fast_atan2(float y, float x) {
   constexpr float kHalfPi = std::numbers::pi_v<float> / 2.0F;
   const float ax = std::abs(x);
   const float ay = std::abs(y);
-  const float larger = std::max(ax, ay);
-  const float q = larger > 0.0F ? std::min(ax, ay) / larger : 0.0F;
+  const float q = std::min(ax, ay) / std::max(std::max(ax, ay), std::numeric_limits<float>::min());
   const float s = q * q;
-  float angle = q * (0.9998660F + s * (-0.3302995F + s * (0.1801410F + s * (-0.0851330F + s * 0.0208351F))));
-  angle = ay > ax ? kHalfPi - angle : angle;
-  angle = x < 0.0F ? std::numbers::pi_v<float> - angle : angle;
-  return y < 0.0F ? -angle : angle;
+  const float octant =
+      q * (0.9998660F + s * (-0.3302995F + s * (0.1801410F + s * (-0.0851330F + s * 0.0208351F))));
+  const float beyond = kHalfPi - octant;
+  const float quadrant = ay > ax ? beyond : octant;
+  const float behind = std::numbers::pi_v<float> - quadrant;
+  return std::copysign(x < 0.0F ? behind : quadrant, y);
 }
 
 struct SphericalGrid {
@@ -45,16 +48,25 @@ struct SphericalGrid {
     }
   };
 
-  [[nodiscard]] static Cell cell(const Point& p) {
-    constexpr float kPerRadian = 180.0F / std::numbers::pi_v<float>;
-    const float azimuth = fast_atan2(p.y(), p.x()) * kPerRadian + 180.0F;
-    const float elevation = fast_atan2(p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y())) * kPerRadian + 90.0F;
-    return {bounded(elevation, kRows), bounded(azimuth, kColumns)};
+  /// Row of a direction `z` high over `planar` (>= 0).
+  [[nodiscard]] static int row(float planar, float z) { return whole(fast_atan2(z, planar), 90.0F, kRows); }
+  [[nodiscard]] static int column(float x, float y) { return whole(fast_atan2(y, x), 180.0F, kColumns); }
+
+  /// The cell with this index().
+  [[nodiscard]] static Cell at(std::size_t index) {
+    return {static_cast<int>(index / kColumns), static_cast<int>(index % kColumns)};
   }
 
-  /// The whole part of `x`, from 0 to count - 1; 0 for NaN.
-  [[nodiscard]] static int bounded(float x, int count) {
-    return static_cast<int>(std::min(std::max(0.0F, x), static_cast<float>(count) - 0.5F));
+  [[nodiscard]] static Cell cell(const Point& p) {
+    return {row(std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z()), column(p.x(), p.y())};
+  }
+
+ private:
+  /// Whole degrees from -`first` on, in 0 .. count - 1; 0 for NaN.
+  [[nodiscard]] static int whole(float angle, float first, int count) {
+    constexpr float kPerRadian = 180.0F / std::numbers::pi_v<float>;
+    const float degrees = angle * kPerRadian + first;
+    return static_cast<int>(std::min(std::max(0.0F, degrees), static_cast<float>(count - 1)));
   }
 };
 

@@ -130,7 +130,7 @@ void HullTracker::Impl::examine(const Joints& joints_mid, Evidence& evidence, Tr
   look(joints_mid);
   visibility.run(*map, map->subset_H(), result.T_W_H, views, scan_filter.sensors(), visible);
   const IntegrityReport report = integrity.run(*map, visible, result.T_W_H, views, reference_W);
-  result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W));
+  result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
 
   if (report.step.solved) {
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
@@ -145,7 +145,7 @@ void HullTracker::Impl::examine(const Joints& joints_mid, Evidence& evidence, Tr
 void HullTracker::Impl::look(const Joints& joints_mid) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Pose T_W_L = lidar_pose(scan_filter.machine(), joints_mid, scan_filter.sensors()[i].mount);
-    views[i].rebuild(filtered.returns, static_cast<std::uint16_t>(i), T_W_L);
+    views[i].rebuild(filtered.returns_W[i], T_W_L);
   }
 }
 

@@ -1,6 +1,10 @@
 #include "core/tracking/scan_view.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+
+#include "core/geometry/sighting.hpp"
 
 namespace hulltrack {
 namespace {
@@ -9,24 +13,14 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-void ScanView::rebuild(std::span<const Return> returns, std::uint16_t lidar, const Pose& T_W_L) {
+void ScanView::rebuild(std::span<const Point> returns_W, const Pose& T_W_L) {
   T_W_L_ = T_W_L;
-  const Eigen::Matrix3f R = T_W_L.linear().transpose().cast<float>();
-  const Point t = T_W_L.inverse().translation().cast<float>();
-  unsorted_L_.clear();
-  cell_of_.clear();
-  for (const Return& r : returns) {
-    if (r.lidar != lidar) {
-      continue;
-    }
-    const Point p_L = R * r.p_W + t;
-    const SphericalGrid::Cell cell = SphericalGrid::cell(p_L);
-    unsorted_L_.push_back(p_L);
-    cell_of_.push_back(static_cast<std::uint32_t>(cell.index()));
-    lowest_row_ = std::min(lowest_row_, cell.row);
-    highest_row_ = std::max(highest_row_, cell.row);
-    columns_seen_.set(static_cast<std::size_t>(cell.column));
-  }
+  unsorted_L_.resize(returns_W.size());
+  cell_of_.resize(returns_W.size());
+  sight(returns_W, T_W_L.inverse(), [this](std::size_t at, const Sightings& seen, std::size_t i) {
+    unsorted_L_[at] = seen.point(i);
+    cell_of_[at] = seen.cell[i];
+  });
   sort_by_cell();
   find_nearest();
 }
@@ -34,20 +28,21 @@ void ScanView::rebuild(std::span<const Return> returns, std::uint16_t lidar, con
 void ScanView::sort_by_cell() {
   first_.assign(SphericalGrid::kCells + 1, 0);
   for (const std::uint32_t cell : cell_of_) {
-    ++first_[cell + 1];
+    ++first_[cell];
   }
   for (std::size_t i = 1; i < first_.size(); ++i) {
     first_[i] += first_[i - 1];
   }
   points_L_.resize(unsorted_L_.size());
-  for (std::size_t i = unsorted_L_.size(); i-- > 0;) {  // filled from the back: first_ ends where it began
-    points_L_[--first_[cell_of_[i] + 1]] = unsorted_L_[i];
+  for (std::size_t i = unsorted_L_.size(); i-- > 0;) {  // filled from the back: offsets end where cells begin
+    points_L_[--first_[cell_of_[i]]] = unsorted_L_[i];
   }
-  // Each first_[cell + 1] now holds where `cell` begins: shift by one.
-  for (std::size_t i = 0; i + 1 < first_.size(); ++i) {
-    first_[i] = first_[i + 1];
-  }
-  first_.back() = static_cast<std::uint32_t>(points_L_.size());
+}
+
+void ScanView::note_field_of_view(SphericalGrid::Cell cell) {
+  lowest_row_ = std::min(lowest_row_, cell.row);
+  highest_row_ = std::max(highest_row_, cell.row);
+  columns_seen_.set(static_cast<std::size_t>(cell.column));
 }
 
 void ScanView::find_nearest() {
@@ -63,6 +58,7 @@ void ScanView::find_nearest() {
       if (nearest2 == kNothing) {
         continue;
       }
+      note_field_of_view(cell);
       const float nearest = std::sqrt(nearest2);
       nearest_[cell.index()] = nearest;
       for (int dr = -1; dr <= 1; ++dr) {

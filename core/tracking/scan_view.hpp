@@ -13,15 +13,15 @@
 #include <span>
 #include <vector>
 
-#include "core/filter/scan_filter.hpp"
+#include "core/geometry/se3.hpp"
 #include "core/geometry/spherical_grid.hpp"
 
 namespace hulltrack {
 
 class ScanView {
  public:
-  /// Takes those of `returns` that LiDAR `lidar` measured; T_W_L is its pose at the middle of the scan.
-  void rebuild(std::span<const Return> returns, std::uint16_t lidar, const Pose& T_W_L);
+  /// `returns_W`: all that the LiDAR measured in the scan; T_W_L is its pose at the middle of it.
+  void rebuild(std::span<const Point> returns_W, const Pose& T_W_L);
 
   [[nodiscard]] const Pose& T_W_L() const { return T_W_L_; }
 
@@ -48,6 +48,7 @@ class ScanView {
 
  private:
   void sort_by_cell();
+  void note_field_of_view(SphericalGrid::Cell cell);
   void find_nearest();
 
   Pose T_W_L_ = Pose::Identity();

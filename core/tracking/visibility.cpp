@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/geometry/sighting.hpp"
+
 namespace hulltrack {
 namespace {
 
@@ -22,24 +24,22 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
   for (std::size_t lidar = 0; lidar < views.size(); ++lidar) {
     const ScanView& view = views[lidar];
     const Pose T_L_H = view.T_W_L().inverse() * T_W_H;
-    const Eigen::Matrix3f R = T_L_H.linear().cast<float>();
-    const Point t = T_L_H.translation().cast<float>();
     const auto min_range = static_cast<float>(sensors[lidar].min_range);
     const auto range = static_cast<float>(std::min(sensors[lidar].max_range, metric_range_));
-    render(map.occluders_H(), R, t, range);
-    for (std::uint32_t i = 0; i < candidates_H.size(); ++i) {
-      const Point p_L = R * candidates_H[i] + t;
-      const float r2 = p_L.squaredNorm();
-      if (!(r2 <= range * range && r2 >= min_range * min_range) || seen_[i]) {
-        continue;
+    render(map.occluders_H(), T_L_H, range);
+    sight(candidates_H, T_L_H, [&](std::size_t candidate, const Sightings& from_L, std::size_t i) {
+      const float r2 = from_L.range2[i];
+      if (!(r2 <= range * range && r2 >= min_range * min_range) || seen_[candidate]) {
+        return;
       }
       const float r = std::sqrt(r2);
-      const SphericalGrid::Cell cell = SphericalGrid::cell(p_L);
+      const SphericalGrid::Cell cell = SphericalGrid::at(from_L.cell[i]);
       if (view.looks_at(cell) && r <= map_nearest_[cell.index()] + kFrontMost && !view.hidden(cell, r)) {
-        out.push_back({i, static_cast<std::uint16_t>(lidar), p_L});
-        seen_[i] = true;
+        out.push_back(
+            {static_cast<std::uint32_t>(candidate), static_cast<std::uint16_t>(lidar), from_L.point(i)});
+        seen_[candidate] = true;
       }
-    }
+    });
   }
   if (views.size() > 1) {
     std::sort(out.begin(), out.end(),
@@ -47,17 +47,12 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
   }
 }
 
-void Visibility::render(std::span<const Point> occluders_H, const Eigen::Matrix3f& R_L_H, const Point& t_L_H,
-                        float range) {
+void Visibility::render(std::span<const Point> occluders_H, const Pose& T_L_H, float range) {
   cell_nearest_.assign(SphericalGrid::kCells, kNothing);
-  for (const Point& p_H : occluders_H) {
-    const Point p_L = R_L_H * p_H + t_L_H;
-    const float r2 = p_L.squaredNorm();
-    if (r2 <= range * range) {
-      float& nearest2 = cell_nearest_[SphericalGrid::cell(p_L).index()];
-      nearest2 = std::min(nearest2, r2);
-    }
-  }
+  sight(occluders_H, T_L_H, [&](std::size_t, const Sightings& from_L, std::size_t i) {
+    float& nearest2 = cell_nearest_[from_L.cell[i]];
+    nearest2 = std::min(nearest2, from_L.range2[i] <= range * range ? from_L.range2[i] : kNothing);
+  });
   // The nearest occluder of a cell covers the most: the others behind it hide nothing besides.
   map_nearest_.assign(SphericalGrid::kCells, kNothing);
   for (int row = 0; row < SphericalGrid::kRows; ++row) {

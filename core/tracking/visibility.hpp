@@ -34,8 +34,7 @@ class Visibility {
            std::vector<VisiblePoint>& out);
 
  private:
-  void render(std::span<const Point> occluders_H, const Eigen::Matrix3f& R_L_H, const Point& t_L_H,
-              float range);
+  void render(std::span<const Point> occluders_H, const Pose& T_L_H, float range);
   void splat(SphericalGrid::Cell cell, float r);
 
   double metric_range_;

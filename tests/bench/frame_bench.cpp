@@ -166,13 +166,13 @@ void time_parts(const FrameRecording& recording, const HullMap& map, Figures& fi
     const Pose T_W_H = icp.align(thinned_W, map.tree(), Pose::Identity()).T_target_source.inverse();
     done("icp");
     const Joints joints = recording.joints.at(scan.mid_time()).joints;
-    views[0].rebuild(filtered.returns, 0, lidar_pose(config.machine, joints, recording.lidar.mount));
+    views[0].rebuild(filtered.returns_W[0], lidar_pose(config.machine, joints, recording.lidar.mount));
     done("scan view");
     visibility.run(map, map.subset_H(), T_W_H, views, filter.sensors(), visible);
     done("visibility");
     static_cast<void>(integrity.run(map, visible, T_W_H, views, Eigen::Vector3d::Zero()));
     done("integrity");
-    const KdTree tree(filtered.hull_W);
+    const KdTree tree(filtered.hull_W, TreeUse::one_batch);
     done("scan tree");
     measured_W.clear();
     for (const VisiblePoint& point : visible) {

@@ -79,9 +79,9 @@ TEST(ScanFilter, EachLidarHasItsOwnMount) {
   add_segment(scan, 0, {point(5, 0, 0)}, 1);
   const FilteredScan out = run(ScanFilter({}, {left, down}, std::nullopt), scan, travelling());
   expect_points(out.hull_W, {{0, 8, 0}, {0, 0, 5}});  // x_L is +y of W; x_L is -z of W
-  ASSERT_EQ(out.returns.size(), 2u);
-  EXPECT_EQ(out.returns[0].lidar, 0);
-  EXPECT_EQ(out.returns[1].lidar, 1);
+  ASSERT_EQ(out.returns_W.size(), 2u);
+  expect_points(out.returns_W[0], {{0, 8, 0}});
+  expect_points(out.returns_W[1], {{0, 0, 5}});
 }
 
 TEST(ScanFilter, RangeLimitsIncludeTheirEndsAndJudgeTheDistanceNotAnAxis) {
@@ -106,7 +106,7 @@ TEST(ScanFilter, ExcludeBoxesAreInTheLidarsFrameAndTheRegionIsInTheWorld) {
   add_segment(scan, 0, {point(5, 0, 0), point(-5, 0, 0), point(5, 2, 0), point(-95, 0, 0), point(15, 0, 0)});
   const FilteredScan out = run(ScanFilter({}, {sensor}, region), scan, travelling());
   expect_points(out.hull_W, {{105, 2, 0}});
-  EXPECT_EQ(out.returns.size(), 5u) << "all of them are what the LiDAR saw";
+  EXPECT_EQ(out.returns_W[0].size(), 5u) << "all of them are what the LiDAR saw";
 }
 
 TEST(ScanFilter, PointsThatAreNotFiniteAreLeftOut) {
@@ -118,7 +118,7 @@ TEST(ScanFilter, PointsThatAreNotFiniteAreLeftOut) {
                point(0, -kInfinity, 0), point(3, 0, 0)});
   const FilteredScan out = run(ScanFilter({}, {SensorConfig{}}, std::nullopt), scan, travelling());
   expect_points(out.hull_W, {{3, 0, 0}});
-  EXPECT_EQ(out.returns.size(), 1u);
+  EXPECT_EQ(out.returns_W[0].size(), 1u);
   EXPECT_EQ(out.segments_left_out, 0u);
 }
 
@@ -159,7 +159,7 @@ TEST(ScanFilter, OutputOfTheScanBeforeIsReplaced) {
   filter.run(scan, travelling(), out);
   filter.run(scan, travelling(), out);
   EXPECT_EQ(out.segments_left_out, 0u);
-  EXPECT_EQ(out.returns.size(), 1u);
+  EXPECT_EQ(out.returns_W[0].size(), 1u);
   EXPECT_EQ(out.hull_W.size(), 1u);
 }
 

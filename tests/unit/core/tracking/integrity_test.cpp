@@ -36,17 +36,17 @@ class IntegrityRun : public testing::Test {
 
   /// Every surfel is asked for at the pose T_W_H; the rays go to where the corner stands in truth, at I.
   IntegrityReport look(const Ray& ray, const Pose& T_W_H = Pose::Identity()) {
-    std::vector<Return> returns;
+    Cloud returns;
     std::vector<VisiblePoint> visible;
     for (std::uint32_t i = 0; i < map.subset_H().size(); ++i) {
       const Point& p = map.subset_H()[i];
       if (const float factor = ray(map.surfels()[i], p); factor != 0.0F) {
-        returns.push_back({factor * p, 0});
+        returns.push_back(factor * p);
       }
       visible.push_back({i, 0, (T_W_H * p.cast<double>()).cast<float>()});
     }
     std::vector<ScanView> views(1);
-    views[0].rebuild(returns, 0, Pose::Identity());
+    views[0].rebuild(returns, Pose::Identity());
     return Integrity().run(map, visible, T_W_H, views, reference);
   }
 

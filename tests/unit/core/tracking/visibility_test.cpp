@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <random>
 
+#include "core/geometry/sighting.hpp"
 #include "tests/support/analytic_ship.hpp"
 
 namespace hulltrack {
@@ -19,6 +21,30 @@ TEST(FastAtan2, IsWithinAFewMicroradians) {
     ASSERT_NEAR(fast_atan2(y, x), std::atan2(y, x), 2e-5) << angle;
   }
   EXPECT_EQ(fast_atan2(0.0F, 0.0F), 0.0F);
+}
+
+TEST(Sightings, EqualThePointsOneByOne) {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<float> u(-40.0F, 40.0F);
+  Cloud cloud(1000);  // the last block is not full
+  for (Point& p : cloud) {
+    p = Point(u(rng), u(rng), u(rng));
+  }
+  cloud[7] = Point::Zero();
+  cloud[8] = Point(0.0F, 0.0F, -3.0F);
+  std::size_t next = 0;
+  sight(cloud, Pose::Identity(), [&](std::size_t at, const Sightings& seen, std::size_t i) {
+    ASSERT_EQ(at, next++);
+    EXPECT_EQ(seen.point(i), cloud[at]);
+    EXPECT_EQ(seen.cell[i], SphericalGrid::cell(cloud[at]).index());
+    EXPECT_FLOAT_EQ(seen.range2[i], cloud[at].squaredNorm());
+  });
+  EXPECT_EQ(next, cloud.size());
+
+  const Pose T_L_W = pose_from_xyz_rpy_deg({1.0, -2.0, 3.0}, {10.0, 20.0, -130.0});
+  sight(cloud, T_L_W, [&](std::size_t at, const Sightings& seen, std::size_t i) {
+    EXPECT_LT((seen.point(i).cast<double>() - T_L_W * cloud[at].cast<double>()).norm(), 2e-5);
+  });
 }
 
 TEST(SphericalGrid, NeighboursWrapAroundAndStopAtThePoles) {
@@ -39,7 +65,7 @@ struct Sight {
 
   void look(const AnalyticShip* scanned) {
     filter.run(testing::scan_ship(scanned, sensor, {}), testing::joints_at_rest(1.0), filtered);
-    views[0].rebuild(filtered.returns, 0, sensor.mount);
+    views[0].rebuild(filtered.returns_W[0], sensor.mount);
     Visibility(25.0).run(map, map.subset_H(), Pose::Identity(), views, std::vector{sensor}, visible);
   }
 
@@ -93,8 +119,8 @@ TEST(Visibility, AgreesWithTheDefinitionOverTheWholeMap) {
   for (const Point& p_H : sight.map.cloud_H()) {
     map_image.add(T_L_W * p_H);
   }
-  for (const Return& r : sight.filtered.returns) {
-    scan_image.add(T_L_W * r.p_W);
+  for (const Point& p_W : sight.filtered.returns_W[0]) {
+    scan_image.add(T_L_W * p_W);
   }
   std::vector<bool> visible(sight.map.subset_H().size(), false);
   for (const VisiblePoint& v : sight.visible) {
@@ -121,13 +147,14 @@ TEST(Visibility, PointsBehindTheScansReturnsAreNotExpected) {
   Sight sight;
   sight.look(&sight.ship);
   const std::size_t clear = sight.visible.size();
-  for (Return& r : sight.filtered.returns) {  // a chute 5 m before the sensor hides the half with y > -3
-    const Point d = r.p_W - sight.sensor.mount.translation().cast<float>();
+  for (Point& p_W :
+       sight.filtered.returns_W[0]) {  // a chute 5 m before the sensor hides the half with y > -3
+    const Point d = p_W - sight.sensor.mount.translation().cast<float>();
     if (d.y() > 0.0F) {
-      r.p_W = sight.sensor.mount.translation().cast<float>() + 5.0F * d.normalized();
+      p_W = sight.sensor.mount.translation().cast<float>() + 5.0F * d.normalized();
     }
   }
-  sight.views[0].rebuild(sight.filtered.returns, 0, sight.sensor.mount);
+  sight.views[0].rebuild(sight.filtered.returns_W[0], sight.sensor.mount);
   Visibility(25.0).run(sight.map, sight.map.subset_H(), Pose::Identity(), sight.views,
                        std::vector{sight.sensor}, sight.visible);
   EXPECT_LT(sight.visible.size(), clear * 7 / 10);
