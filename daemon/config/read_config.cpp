@@ -72,33 +72,6 @@ std::optional<Problem> find_long_line(std::string_view text, const std::string& 
   return std::nullopt;
 }
 
-/// The first character that is not ASCII outside comments and strings, or a string of several lines: toml++
-/// 3.3 runs into undefined behaviour on letters from U+00A1 to U+0499 where it looks for blanks.
-std::optional<Problem> find_foreign_character(std::string_view text, const std::string& file) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  constexpr char kComment = '#';
-  int line = 1;
-  char within = 0;  // 0, kComment or the quote that ends the string
-  for (std::size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') {
-      within = 0;  // a string that is still open is the parser's to complain of
-      ++line;
-    } else if (within == 0 && static_cast<unsigned char>(c) >= 0x80) {
-      return Problem{file, line, "a letter that is not ASCII; only strings and comments may hold such"};
-    } else if (within == 0 && (text.substr(i, 3) == "\"\"\"" || text.substr(i, 3) == "'''")) {
-      return Problem{file, line, "a string of several lines; write it in one line between single quotes"};
-    } else if (within == 0 && (c == kComment || c == '"' || c == '\'')) {
-      within = c;
-    } else if (within == '"' && c == '\\' && i + 1 < text.size() && text[i + 1] != '\n') {
-      ++i;  // an escaped quote ends nothing
-    } else if (within == c && c != kComment) {
-      within = 0;
-    }
-  }
-  return std::nullopt;
-}
-
 void resolve_paths(Config& config, const std::filesystem::path& file) {
   std::error_code ignored;
   const auto folder = std::filesystem::absolute(file, ignored).parent_path();
@@ -125,9 +98,6 @@ ConfigReading parse_config(std::string_view text, const std::filesystem::path& f
   }
   if (const auto long_line = find_long_line(text, name)) {
     return {std::nullopt, {*long_line}, {}};
-  }
-  if (const auto foreign = find_foreign_character(text, name)) {
-    return {std::nullopt, {*foreign}, {}};
   }
   Document document = read_document(text, name, models);
   if (document.lines.empty()) {  // not even TOML
