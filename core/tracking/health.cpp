@@ -34,7 +34,7 @@ void check_registration(const HealthLimits& limits, const Evidence& e, Findings&
   const auto least = static_cast<std::uint32_t>(std::max(0, limits.health.min_matched));
   if (!e.registered || e.matched < least) {
     findings.add(State::lost, fault::few_matches,
-                 format_text("%u matched points, min_matched is %u", e.matched, least));
+                 counted(e.matched, "matched point") + format_text(", min_matched is %u", least));
   }
   if (!e.converged) {
     findings.add(e.registered ? State::degraded : State::lost, fault::not_converged, e.trouble);
@@ -144,9 +144,10 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   memory.good_frames = findings.state == State::tracking ? memory.good_frames + 1 : 0;
   if (findings.state == State::tracking && memory.state != State::tracking &&
       memory.good_frames < limits.health.recover_frames) {
-    findings.add(
-        State::degraded, 0,
-        format_text("recovering: %d good frames of %d", memory.good_frames, limits.health.recover_frames));
+    findings.add(State::degraded, 0,
+                 format_text("recovering: %s of %d",
+                             counted(static_cast<std::uint64_t>(memory.good_frames), "good frame").c_str(),
+                             limits.health.recover_frames));
   }
   if (findings.state == State::tracking) {
     memory.acquired = true;

@@ -122,7 +122,9 @@ TEST(Health, ReturnsAfterRecoverFramesGoodFramesInARow) {
     for (int i = 1; i < 5; ++i) {
       const HealthVerdict verdict = machine.step();
       EXPECT_EQ(verdict.state, State::degraded) << c.what << ", good frame " << i;
-      EXPECT_FALSE(verdict.reason.empty()) << c.what;
+      EXPECT_EQ(verdict.reason, i == 1 ? "recovering: 1 good frame of 5"
+                                       : "recovering: " + std::to_string(i) + " good frames of 5")
+          << c.what;
     }
     EXPECT_EQ(machine.step().state, State::tracking) << c.what;
   }
