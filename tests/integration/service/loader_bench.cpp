@@ -25,8 +25,12 @@ CyclingPlc::CyclingPlc(std::uint16_t port)
 }
 
 std::optional<WriteBlock> CyclingPlc::wait_for(const std::function<bool(const WriteBlock&)>& law) {
+  return wait_for(law, blocks().size());
+}
+
+std::optional<WriteBlock> CyclingPlc::wait_for(const std::function<bool(const WriteBlock&)>& law,
+                                               std::size_t seen) {
   std::unique_lock lock(mutex_);
-  std::size_t seen = blocks_.size();  // only what is written from now on counts
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   for (;;) {
     for (; seen < blocks_.size(); ++seen) {

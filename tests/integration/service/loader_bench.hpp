@@ -23,8 +23,10 @@ class CyclingPlc {
 
   [[nodiscard]] sim::PlcServer& server() { return server_; }
 
-  /// Waits for a write that fulfils `law`; nothing after a minute.
+  /// Waits for a write from now on that fulfils `law`; nothing after a minute.
   std::optional<WriteBlock> wait_for(const std::function<bool(const WriteBlock&)>& law);
+  /// The same among all writes but the first `seen`, which may have come already.
+  std::optional<WriteBlock> wait_for(const std::function<bool(const WriteBlock&)>& law, std::size_t seen);
   /// Every block written so far, in order.
   [[nodiscard]] std::vector<WriteBlock> blocks() const;
 

@@ -53,7 +53,7 @@ class RunningPlcThreadTest : public PlcThreadTest {
 
 TEST_F(RunningPlcThreadTest, AStuckTrackerCanNeverLookHealthy) {
   deliver(healthy_frame(1));
-  const auto healthy = plc.wait_for([](const WriteBlock& block) { return block.health; });
+  const auto healthy = plc.wait_for([](const WriteBlock& block) { return block.health; }, 0);
   ASSERT_TRUE(healthy);
   EXPECT_NEAR(healthy->x_m, 0.1, 1e-6);
   // No further frame: the age grows at every write until the health falls by itself.
@@ -68,7 +68,7 @@ TEST_F(RunningPlcThreadTest, AStuckTrackerCanNeverLookHealthy) {
 
 TEST_F(RunningPlcThreadTest, AnRxThreadThatStoppedLookingCountsAsSilence) {
   deliver(healthy_frame(1));
-  ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.health; }));
+  ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.health; }, 0));
   exchange.lidars.put({.standing = 0, .every_silent = false, .updated = steady_now()});
   EXPECT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.state == State::fault; }));
 }
@@ -89,10 +89,11 @@ TEST_F(PlcThreadTest, AnEscapingExceptionLeavesHealthZeroAndStateStopped) {
         "plc", [this](std::stop_token stop) { thread.run(stop); },
         [&](const std::string&, const std::string& message) { what = message; },
         [this] { exchange.plc_bell.ring(); });
-    ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.health; }));
+    ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.health; }, 0));
+    const std::size_t before = plc.blocks().size();
     log.fail_next();
     plc.server().set_fault(sim::PlcFault::out_of_range);  // something to log
-    ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.state == State::stopped; }));
+    ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.state == State::stopped; }, before));
   }
   EXPECT_EQ(what, "the log failed");
   EXPECT_FALSE(plc.blocks().back().health);

@@ -36,8 +36,14 @@ class SessionTest : public testing::Test {
   std::optional<WriteBlock> wait_for(const std::function<bool(const WriteBlock&)>& law) {
     return plc->wait_for(law);
   }
-  std::optional<WriteBlock> wait_for_fault(Faults bit) {
-    return wait_for([bit](const WriteBlock& block) { return (block.faults & bit) != 0; });
+  /// The first write with the fault bit after what causes it.
+  std::optional<WriteBlock> fault_after(const std::function<void()>& cause, Faults bit) {
+    const std::size_t before = plc->blocks().size();
+    cause();
+    return plc->wait_for([bit](const WriteBlock& block) { return (block.faults & bit) != 0; }, before);
+  }
+  std::optional<WriteBlock> fault_after(sim::PlcFault of_plc, int times, Faults bit) {
+    return fault_after([&] { plc->server().set_fault(of_plc, times); }, bit);
   }
 
   /// Waits until `count` more writes have failed.
@@ -97,8 +103,7 @@ TEST_F(SessionTest, HeartbeatGrowsByOneAtEveryWriteAlsoAcrossAReload) {
 TEST_F(SessionTest, ASilentLidarTakesTheHealthAndGivesItBack) {
   start();
   ASSERT_TRUE(wait_for(healthy));
-  lidar.mute(true);
-  const auto silent = wait_for_fault(fault::lidar_silent);
+  const auto silent = fault_after([this] { lidar.mute(true); }, fault::lidar_silent);
   ASSERT_TRUE(silent);
   EXPECT_FALSE(silent->health);
   EXPECT_EQ(silent->state, State::fault);
@@ -113,8 +118,7 @@ TEST_F(SessionTest, AForeignSenderIsNamedAndChangesNothing) {
   start();
   ASSERT_TRUE(wait_for(healthy));
   RoomLidar foreign(lidar_port);
-  foreign.send_from(INADDR_LOOPBACK + 1);
-  ASSERT_TRUE(wait_for_fault(fault::foreign_packets));
+  ASSERT_TRUE(fault_after([&] { foreign.send_from(INADDR_LOOPBACK + 1); }, fault::foreign_packets));
   const auto block = wait_for(healthy);
   ASSERT_TRUE(block);
   EXPECT_NEAR(block->x_m, 0.0, 0.05);
@@ -132,11 +136,9 @@ TEST_F(SessionTest, StartsWithoutAPlcAndServesItOnceItIsThere) {
 TEST_F(SessionTest, ALostLinkIsToldAndMended) {
   start();
   ASSERT_TRUE(wait_for(healthy));
-  plc->server().set_fault(sim::PlcFault::reset, 1);
-  ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+  ASSERT_TRUE(fault_after(sim::PlcFault::reset, 1, fault::plc_link_lost));
   EXPECT_TRUE(wait_for(healthy));
-  plc->server().set_fault(sim::PlcFault::late_reply, 1);
-  ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+  ASSERT_TRUE(fault_after(sim::PlcFault::late_reply, 1, fault::plc_link_lost));
   EXPECT_TRUE(wait_for(healthy));
 }
 
@@ -147,8 +149,7 @@ TEST_F(SessionTest, APlcThatFallsSilentIsServedAgainWhenItSpeaks) {
        {sim::PlcFault::silent, sim::PlcFault::black_hole, sim::PlcFault::pool_full}) {
     plc->server().set_fault(fault);
     ASSERT_TRUE(wait_for_failed_writes(3));
-    plc->server().set_fault(sim::PlcFault::none);
-    ASSERT_TRUE(wait_for_fault(fault::plc_link_lost));
+    ASSERT_TRUE(fault_after([this] { plc->server().set_fault(sim::PlcFault::none); }, fault::plc_link_lost));
     ASSERT_TRUE(wait_for(healthy));
   }
   EXPECT_EQ(plc->server().most_connections(), 1) << "never more than one socket";
@@ -172,8 +173,8 @@ TEST_F(SessionTest, AFloodFromTheRightAddressKeepsTheRhythm) {
 TEST_F(SessionTest, AFrozenPlcHeartbeatIsStaleData) {
   start();
   ASSERT_TRUE(wait_for(healthy));
-  plc->server().set_fault(sim::PlcFault::frozen_heartbeat);
-  const auto stale = wait_for_fault(fault::plc_stale);
+  const auto stale =
+      fault_after([this] { plc->server().set_fault(sim::PlcFault::frozen_heartbeat); }, fault::plc_stale);
   ASSERT_TRUE(stale);
   EXPECT_FALSE(stale->health);
   EXPECT_EQ(stale->state, State::fault);
@@ -184,8 +185,8 @@ TEST_F(SessionTest, AFrozenPlcHeartbeatIsStaleData) {
 TEST_F(SessionTest, AnImpossibleJointValueIsRefused) {
   start();
   ASSERT_TRUE(wait_for(healthy));
-  plc->server().set_fault(sim::PlcFault::out_of_range);
-  ASSERT_TRUE(wait_for_fault(fault::plc_value));
+  ASSERT_TRUE(
+      fault_after([this] { plc->server().set_fault(sim::PlcFault::out_of_range); }, fault::plc_value));
   EXPECT_TRUE(wait_for([](const WriteBlock& block) { return !block.health; }));
   plc->server().set_fault(sim::PlcFault::none);
   EXPECT_TRUE(wait_for(healthy));
