@@ -70,11 +70,12 @@ struct HealthVerdict {
 struct HealthLimits {
   HealthConfig health;
   Eigen::Vector3d envelope_min, envelope_max;  // displacement, m
-  double max_speed = 0.3;                      // m/s
+  double max_speed = 0.3;                      // m/s, of any part of the hull
+  double half_length = 0.0;                    // of the hull as far as it is mapped, level, m
 };
 
-/// The limits that a configuration sets.
-[[nodiscard]] HealthLimits health_limits(const TrackerConfig& config);
+/// The limits that a configuration and the size of the map set.
+[[nodiscard]] HealthLimits health_limits(const TrackerConfig& config, double half_length);
 
 [[nodiscard]] std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits,
                                                                   HealthMemory memory,

@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -31,6 +30,17 @@ double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) 
 
 }  // namespace
 
+/// Half of the map's length, level, m.
+double half_length(const Cloud& cloud_H) {
+  Eigen::Array2f low = cloud_H.front().head<2>();
+  Eigen::Array2f high = low;
+  for (const Point& p : cloud_H) {
+    low = low.min(p.head<2>().array());
+    high = high.max(p.head<2>().array());
+  }
+  return static_cast<double>((high - low).maxCoeff()) / 2.0;
+}
+
 struct HullTracker::Impl {
   TrackerConfig config;
   HealthLimits limits;
@@ -54,15 +64,13 @@ struct HullTracker::Impl {
   Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
        std::shared_ptr<const HullMap> m)
       : config(c),
-        limits(health_limits(c)),
+        limits(health_limits(c, half_length(m->cloud_H()))),
         map(std::move(m)),
         scan_filter(machine, std::move(sensors), c.hull.region),
         voxel_filter(c.registration.voxel_size),
         icp(icp_config(c.registration)),
         visibility(c.health.metric_range),
-        views(scan_filter.sensors().size()) {
-    assert(map != nullptr);
-  }
+        views(scan_filter.sensors().size()) {}
 
   TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
   void register_scan(Evidence& evidence, TrackResult& result);

@@ -1,6 +1,7 @@
-// How fast is the hull moving? The slope of its latest positions, so that noise does not trip the limit.
+// How fast is the hull moving? The slope of its latest poses, so that noise does not trip the limit.
 //
-// Positions of the reference point in W, m; a plain value of bounded size. Pure.
+// Positions of the reference point in W, m, and yaw about W's vertical axis, rad; a plain value of bounded
+// size. Roll and pitch are left out: waves move a moored ship about these axes. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,19 +20,24 @@ class MotionRecord {
   static constexpr std::size_t kFewest = 4;
   static constexpr Nanoseconds kShortest = std::chrono::milliseconds(300);
 
-  /// Times must not run backwards (an earlier position restarts the record).
-  void add(MeasurementTime time, const Eigen::Vector3d& position) {
+  struct Motion {
+    Eigen::Vector3d velocity;  // m/s
+    double yaw_rate;           // rad/s
+  };
+
+  /// Times must not run backwards (an earlier pose restarts the record). Yaw stays far from +-180 deg.
+  void add(MeasurementTime time, const Eigen::Vector3d& position, double yaw) {
     if (!poses_.empty() && time <= poses_.back().time) {
       poses_.clear();
     }
-    poses_.push_back({time, position});
+    poses_.push_back({time, {position.x(), position.y(), position.z(), yaw}});
     while (time - poses_.front().time > kWindow) {
       poses_.pop_front();
     }
   }
 
-  /// Least squares slope, m/s; nothing while fewer than kFewest positions span kShortest.
-  [[nodiscard]] std::optional<Eigen::Vector3d> velocity() const {
+  /// Least squares slope; nothing while fewer than kFewest poses span kShortest.
+  [[nodiscard]] std::optional<Motion> motion() const {
     if (poses_.size() < kFewest || poses_.back().time - poses_.front().time < kShortest) {
       return std::nullopt;
     }
@@ -40,19 +46,19 @@ class MotionRecord {
       mean_t += since_first(e) / static_cast<double>(poses_.size());
     }
     double tt = 0.0;
-    Eigen::Vector3d tp = Eigen::Vector3d::Zero();
+    Eigen::Vector4d tp = Eigen::Vector4d::Zero();
     for (const Entry& e : poses_) {
       const double t = since_first(e) - mean_t;
       tt += t * t;
-      tp += t * e.position;
+      tp += t * e.pose;
     }
-    return tp / tt;
+    return Motion{tp.head<3>() / tt, tp[3] / tt};
   }
 
  private:
   struct Entry {
     MeasurementTime time;
-    Eigen::Vector3d position;
+    Eigen::Vector4d pose;  // position, yaw
   };
   [[nodiscard]] double since_first(const Entry& e) const { return to_seconds(e.time - poses_.front().time); }
 

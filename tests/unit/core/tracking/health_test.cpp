@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-HealthLimits limits() { return health_limits(TrackerConfig{}); }
+HealthLimits limits() { return health_limits(TrackerConfig{}, 60.0); }
 
 Evidence good(int frame) {
   Evidence e;
@@ -216,6 +216,38 @@ TEST(Health, SteadySpeedAboveTheLimitTakesHealth) {
   }
 }
 
+TEST(Health, TurningFasterThanTheEndsMayMoveTakesHealth) {
+  // 0.3 m/s 60 m from the middle is 0.29 deg/s, and noise 0.1.
+  for (const double rate_deg : {0.25, 0.5, -0.5}) {
+    Machine machine = tracking_machine();
+    HealthVerdict verdict;
+    for (int i = 1; i <= 20; ++i) {
+      verdict = machine.step([&](Evidence& e) {
+        e.rotation =
+            Eigen::AngleAxisd(radians(rate_deg) * 0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      });
+    }
+    EXPECT_EQ(verdict.state == State::tracking, rate_deg == 0.25) << rate_deg;
+    if (rate_deg != 0.25) {
+      EXPECT_EQ(verdict.faults, fault::implausible);
+      EXPECT_NE(verdict.reason.find("0.50 deg/s"), std::string::npos) << verdict.reason;
+    }
+  }
+}
+
+TEST(Health, RollingAsWavesDoKeepsHealth) {
+  Machine machine = tracking_machine();
+  for (int i = 1; i <= 80; ++i) {  // 1 deg in 8 s: 0.8 deg/s at the most
+    const double roll = radians(1.0) * std::sin(2.0 * 3.14159 * 0.1 * i / 8.0);
+    EXPECT_EQ(machine
+                  .step([&](Evidence& e) {
+                    e.rotation = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
+                  })
+                  .state,
+              State::tracking);
+  }
+}
+
 TEST(Health, RefusedPlcValueBetweenGoodOnesIsReportedAndCostsNothing) {
   Machine machine = tracking_machine();
   const HealthVerdict verdict = machine.step([](Evidence& e) { e.plc_faults = fault::plc_value; });
@@ -226,17 +258,19 @@ TEST(Health, RefusedPlcValueBetweenGoodOnesIsReportedAndCostsNothing) {
 TEST(MotionRecord, SlopeOfALineIsItsSpeed) {
   MotionRecord record;
   for (int i = 0; i < 30; ++i) {
-    record.add(MeasurementTime{i * milliseconds(100)}, {0.2 * 0.1 * i, -0.1 * 0.1 * i, 5.0});
+    const double t = 0.1 * i;
+    record.add(MeasurementTime{i * milliseconds(100)}, {0.2 * t, -0.1 * t, 5.0}, 0.3 - 0.01 * t);
   }
-  ASSERT_TRUE(record.velocity());
-  EXPECT_TRUE(record.velocity()->isApprox(Eigen::Vector3d(0.2, -0.1, 0.0), 1e-9));
+  ASSERT_TRUE(record.motion());
+  EXPECT_TRUE(record.motion()->velocity.isApprox(Eigen::Vector3d(0.2, -0.1, 0.0), 1e-9));
+  EXPECT_NEAR(record.motion()->yaw_rate, -0.01, 1e-9);
 }
 
 TEST(MotionRecord, FewPositionsHaveNoSpeed) {
   MotionRecord record;
   for (int i = 0; i < 3; ++i) {
-    record.add(MeasurementTime{i * milliseconds(100)}, {1.0 * i, 0, 0});
-    EXPECT_FALSE(record.velocity());
+    record.add(MeasurementTime{i * milliseconds(100)}, {1.0 * i, 0, 0}, 0.0);
+    EXPECT_FALSE(record.motion());
   }
 }
 
