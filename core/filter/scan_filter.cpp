@@ -1,6 +1,7 @@
 #include "core/filter/scan_filter.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace hulltrack {
 namespace {
@@ -13,7 +14,7 @@ bool inside_any(const std::vector<Box>& boxes, const Point& p) {
 
 ScanFilter::ScanFilter(const MachineConfig& machine, std::vector<SensorConfig> sensors,
                        std::optional<Box> region_W)
-    : machine_(machine), sensors_(std::move(sensors)), region_W_(region_W) {}
+    : machine_(machine), sensors_(std::move(sensors)), region_W_(std::move(region_W)) {}
 
 void ScanFilter::run(const Scan& scan, const JointHistory& joints, FilteredScan& out) const {
   out.returns_W.resize(sensors_.size());

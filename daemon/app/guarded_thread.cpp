@@ -9,7 +9,7 @@ namespace hulltrack {
 GuardedThread::GuardedThread(std::string name, Body body, OnFailure on_failure, std::function<void()> on_stop)
     : on_stop_(std::move(on_stop)),
       thread_([name = std::move(name), body = std::move(body),
-               on_failure = std::move(on_failure)](std::stop_token stop) {
+               on_failure = std::move(on_failure)](const std::stop_token& stop) {
         pthread_setname_np(pthread_self(), name.substr(0, 15).c_str());
         try {
           body(stop);

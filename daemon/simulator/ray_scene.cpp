@@ -2,7 +2,7 @@
 
 #include <embree3/rtcore.h>
 
-#include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -15,7 +15,7 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
                  const std::vector<Element>& data) {
   void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), data.size());
   if (buffer == nullptr) throw std::runtime_error("simulator: Embree has no memory for the ray-cast world");
-  std::memcpy(buffer, data.data(), data.size() * sizeof(Element));
+  std::uninitialized_copy(data.begin(), data.end(), static_cast<Element*>(buffer));
 }
 
 RTCRay ray_along(const Point& origin, const Point& direction, float max_distance) {
