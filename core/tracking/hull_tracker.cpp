@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -31,7 +32,9 @@ double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) 
 }  // namespace
 
 /// Half of the map's length, level, m.
-double half_length(const Cloud& cloud_H) {
+double half_length(const HullMap* map) {
+  assert(map != nullptr);
+  const Cloud& cloud_H = map->cloud_H();
   Eigen::Array2f low = cloud_H.front().head<2>();
   Eigen::Array2f high = low;
   for (const Point& p : cloud_H) {
@@ -64,7 +67,7 @@ struct HullTracker::Impl {
   Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
        std::shared_ptr<const HullMap> m)
       : config(c),
-        limits(health_limits(c, half_length(m->cloud_H()))),
+        limits(health_limits(c, half_length(m.get()))),
         map(std::move(m)),
         scan_filter(machine, std::move(sensors), c.hull.region),
         voxel_filter(c.registration.voxel_size),
