@@ -3,12 +3,10 @@
 // Times are CPU time of the one thread that does it all. Every frame must come out healthy and near the
 // truth, or the run is void. Figures go to stdout as JSON; scripts/bench runs this and prints them. The split
 // by parts runs the parts one by one over the same frames, in HullTracker's order.
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <limits>
@@ -25,6 +23,7 @@
 #include "daemon/app/publication.hpp"
 #include "lidar_drivers/scan_builder.hpp"
 #include "plc/register_codec.hpp"
+#include "tests/bench/bench_process.hpp"
 #include "tests/bench/frame_recording.hpp"
 #include "tests/support/bench_scene.hpp"
 
@@ -36,13 +35,6 @@ constexpr int kRounds = 7;
 constexpr std::uint32_t kSeed = 1;
 constexpr double kMapSpacing = 0.05;  // m
 constexpr double kWrong = 0.05;       // m
-
-void require(bool holds, const char* what) {
-  if (!holds) {
-    std::fprintf(stderr, "benchmark void: %s\n", what);
-    std::exit(EXIT_FAILURE);
-  }
-}
 
 double cpu_ms() {
   timespec t{};
@@ -65,12 +57,6 @@ class Stopwatch {
 double percentile(std::vector<double> values, double p) {
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(p * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 /// Writes the scene's map where only this process looks for it.

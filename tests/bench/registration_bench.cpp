@@ -3,14 +3,13 @@
 // Every peer's answers are compared before the clock starts; a difference ends the run. Times are
 // process CPU time of one thread. scripts/bench runs this and prints the ratios.
 #include <benchmark/benchmark.h>
-#include <sys/resource.h>
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/filter/voxel_filter.hpp"
 #include "core/search/kdtree.hpp"
+#include "tests/bench/bench_process.hpp"
 #include "tests/bench/peers.hpp"
 #include "tests/support/bench_scene.hpp"
 
@@ -28,19 +27,6 @@ struct StartError {
 };
 constexpr StartError kAcquiring{0.15, radians(0.3)};
 constexpr StartError kTracking{0.03, radians(0.05)};
-
-void require(bool holds, const char* what) {
-  if (!holds) {
-    std::fprintf(stderr, "benchmark void: %s\n", what);
-    std::exit(EXIT_FAILURE);
-  }
-}
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 // Built once, before anything is measured.
 struct Case {
