@@ -93,7 +93,8 @@ Config load_config(const ReplayOptions& options) {
   if (!reading.config) {
     std::string text;
     for (const Problem& problem : reading.problems) {
-      text += (text.empty() ? "" : "\n") + to_string(problem);
+      text += text.empty() ? "" : "\n";
+      text += to_string(problem);
     }
     throw ToolError(text);
   }
