@@ -25,7 +25,7 @@ void Notifier::status(const std::string& line) {
 }
 
 void Notifier::watchdog(SteadyTime now) {
-  if (watchdog_period_ && (!last_watchdog_ || now - *last_watchdog_ >= *watchdog_period_)) {
+  if (watchdog_timeout_ && (!last_watchdog_ || now - *last_watchdog_ >= *watchdog_timeout_ / 3)) {
     sd_notify(0, "WATCHDOG=1");
     last_watchdog_ = now;
   }
@@ -35,12 +35,12 @@ void Notifier::reloading() { sd_notify(0, ("RELOADING=1\nMONOTONIC_USEC=" + mono
 
 void Notifier::stopping() { sd_notify(0, "STOPPING=1\nSTATUS=stopping"); }
 
-std::optional<Nanoseconds> Notifier::watchdog_period() {
+std::optional<Nanoseconds> Notifier::watchdog_timeout() {
   std::uint64_t microseconds = 0;
   if (sd_watchdog_enabled(0, &microseconds) <= 0) {
     return std::nullopt;
   }
-  return std::chrono::microseconds(microseconds / 3);
+  return std::chrono::microseconds(microseconds);
 }
 
 }  // namespace hulltrack

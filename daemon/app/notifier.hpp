@@ -17,16 +17,16 @@ class Notifier {
   void ready();
   /// One line for `systemctl status`; sent only when it differs from the last.
   void status(const std::string& line);
-  /// Everything makes progress; sent as often as the manager wants it, however often it is called.
+  /// Everything makes progress; sent three times in WatchdogSec=, however often it is called.
   void watchdog(SteadyTime now);
   void reloading();
   void stopping();
 
-  /// A third of WatchdogSec=; nothing if no watchdog is set.
-  [[nodiscard]] static std::optional<Nanoseconds> watchdog_period();
+  /// WatchdogSec=; nothing if no watchdog is set.
+  [[nodiscard]] static std::optional<Nanoseconds> watchdog_timeout();
 
  private:
-  std::optional<Nanoseconds> watchdog_period_ = watchdog_period();
+  std::optional<Nanoseconds> watchdog_timeout_ = watchdog_timeout();
   std::optional<SteadyTime> last_watchdog_;
   std::string last_status_;
 };

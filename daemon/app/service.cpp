@@ -137,17 +137,11 @@ void Service::fall_back(const std::string& refusal, const WriteBlock& last, Stea
 }
 
 void Service::supervise(SteadyTime now) {
-  const auto overdue = session_->watch().overdue(now);
-  if (!overdue) {
+  const std::vector<ThreadWatch::Overdue> overdue = session_->watch().overdue(now);
+  if (overdue.empty()) {
     notifier_.watchdog(now);
-    overdue_.reset();
-  } else if (overdue_ != overdue->thread) {
-    overdue_ = overdue->thread;
-    log_.write(LogLevel::error,
-               format_text("thread %s has made no progress for %.1f s: the watchdog is not fed, the "
-                           "service manager will restart the service",
-                           overdue->thread.c_str(), to_seconds(overdue->silence)));
   }
+  progress_log_.update(overdue, now);
 }
 
 void Service::report(SteadyTime now) {

@@ -18,6 +18,7 @@
 #include "daemon/app/mailbox.hpp"
 #include "daemon/app/notifier.hpp"
 #include "daemon/app/prepare.hpp"
+#include "daemon/app/progress_log.hpp"
 #include "daemon/app/session.hpp"
 #include "daemon/app/signals.hpp"
 #include "daemon/app/syslog_sink.hpp"
@@ -47,13 +48,13 @@ class Service {
   Signals& signals_;
   SyslogSink& log_;
   Notifier notifier_;
+  ProgressLog progress_log_{log_, Notifier::watchdog_timeout()};
   Mailbox<std::optional<std::string>> failure_;  // a thread's, once it has ended
   std::unique_ptr<Session> session_;
   std::uint16_t heartbeat_ = 0;
   std::future<Preparation> reload_;
   bool reload_again_ = false;
   bool stopping_ = false;
-  std::optional<std::string> overdue_;  // thread that the log has been told of
   Figures minute_;
   SteadyTime second_began_{};
   SteadyTime minute_began_{};

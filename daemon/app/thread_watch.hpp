@@ -8,8 +8,8 @@
 
 #include <atomic>
 #include <deque>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/time.hpp"
 
@@ -47,14 +47,15 @@ class ThreadWatch {
     return pulses_.emplace_back(std::move(name), limit, now);
   }
 
-  /// The first thread that has been silent for longer than its limit, if any.
-  [[nodiscard]] std::optional<Overdue> overdue(SteadyTime now) const {
+  /// The threads that have been silent for longer than their limits.
+  [[nodiscard]] std::vector<Overdue> overdue(SteadyTime now) const {
+    std::vector<Overdue> found;
     for (const Pulse& pulse : pulses_) {
       if (const Nanoseconds silence = pulse.silence(now); silence > pulse.limit()) {
-        return Overdue{pulse.name(), silence};
+        found.push_back({pulse.name(), silence});
       }
     }
-    return std::nullopt;
+    return found;
   }
 
  private:

@@ -28,27 +28,30 @@ TEST(ThreadWatch, NamesTheThreadThatStoppedBeating) {
   Pulse& track = watch.add("track", milliseconds(500), at(milliseconds(0)));
   rx.beat(at(milliseconds(400)));
   track.beat(at(milliseconds(400)));
-  EXPECT_FALSE(watch.overdue(at(milliseconds(900))));
+  EXPECT_TRUE(watch.overdue(at(milliseconds(900))).empty());
   rx.beat(at(milliseconds(900)));
   const auto overdue = watch.overdue(at(milliseconds(901)));
-  ASSERT_TRUE(overdue);
-  EXPECT_EQ(overdue->thread, "track");
-  EXPECT_EQ(overdue->silence, milliseconds(501));
+  ASSERT_EQ(overdue.size(), 1U);
+  EXPECT_EQ(overdue[0].thread, "track");
+  EXPECT_EQ(overdue[0].silence, milliseconds(501));
 }
 
 TEST(ThreadWatch, BelievesAThreadAgainOnceItBeats) {
   ThreadWatch watch;
   Pulse& rx = watch.add("rx", milliseconds(100), at(milliseconds(0)));
-  ASSERT_TRUE(watch.overdue(at(milliseconds(200))));
+  ASSERT_FALSE(watch.overdue(at(milliseconds(200))).empty());
   rx.beat(at(milliseconds(200)));
-  EXPECT_FALSE(watch.overdue(at(milliseconds(300))));
+  EXPECT_TRUE(watch.overdue(at(milliseconds(300))).empty());
 }
 
 TEST(ThreadWatch, EveryThreadHasItsOwnLimit) {
   ThreadWatch watch;
   watch.add("slow", milliseconds(1000), at(milliseconds(0)));
   watch.add("fast", milliseconds(10), at(milliseconds(0)));
-  EXPECT_EQ(watch.overdue(at(milliseconds(20)))->thread, "fast");
+  const auto overdue = watch.overdue(at(milliseconds(20)));
+  ASSERT_EQ(overdue.size(), 1U);
+  EXPECT_EQ(overdue[0].thread, "fast");
+  EXPECT_EQ(watch.overdue(at(milliseconds(1001))).size(), 2U);
 }
 
 TEST(GuardedThread, TellsWhatWasThrownInsteadOfTerminating) {
