@@ -37,7 +37,8 @@ class HeaderParser {
         return Error{"its header has no DATA line; is the file cut short?"};
       }
       if (!take(*line)) {
-        return lines_.error("`" + std::string(line->substr(0, 60)) + "` is not a legal line of a PCD header");
+        return lines_.error(std::string("`").append(line->substr(0, 60)) +
+                            "` is not a legal line of a PCD header");
       }
     }
     return finish();

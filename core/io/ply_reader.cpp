@@ -95,7 +95,7 @@ class HeaderParser {
     if (word == "property") {
       return element_ == Element::later ? std::string{} : take_property(line);
     }
-    return "`" + std::string(word.substr(0, 40)) + "` is not a legal line of a PLY header";
+    return std::string("`").append(word.substr(0, 40)) + "` is not a legal line of a PLY header";
   }
 
   std::string take_format(std::string_view name) {
@@ -116,7 +116,7 @@ class HeaderParser {
     if (element_ == Element::none) {
       const auto points = parse_number<std::size_t>(count);
       if (!points) {
-        return "`" + std::string(count.substr(0, 40)) + "` is not a number of points";
+        return std::string("`").append(count.substr(0, 40)) + "` is not a number of points";
       }
       header_.points = *points;
     }
