@@ -18,7 +18,21 @@ constexpr float kNeighbourMargin = 0.02F;
 // Distances are rounded to float: a bound is believed only up to this share of the lengths in it.
 constexpr float kRounding = 1e-5F;
 
+// A point placed in float is off by at most this share of the distances that it is computed from: some ten
+// roundings of 6e-8 each.
+constexpr float kRoundingOfPlace = 1e-6F;
+
+// Points that find_awake() looks at together.
+constexpr std::size_t kBlock = 64;
+
 }  // namespace
+
+void CorrespondenceCache::Lanes::reset(std::size_t size) {
+  for (std::vector<float>* lane : {&x, &y, &z, &searched_x, &searched_y, &searched_z}) {
+    lane->assign(size, 0.0F);
+  }
+  alone.assign(size, -1.0F);
+}
 
 // Same float operations as the tree's own; equal distances go to the lowest index.
 CorrespondenceCache::Nearest CorrespondenceCache::nearest_of(const Neighbourhood& near, const Point& q) {
@@ -44,28 +58,34 @@ void CorrespondenceCache::reset(std::span<const Point> source, const KdTree& tar
   target_ = &target;
   searches_ = 0;
   margin_ = 0.0F;
-  places_.resize(source.size());
-  nearest_.resize(source.size());
   entries_.resize(source.size());
   for (Entry& entry : entries_) {
     entry.near.count = 0;
     entry.near.clear_radius = -1.0F;  // nothing is known: the first find() searches
     entry.searched_at = Point::Zero();
   }
+  lanes_.reset((source.size() + kBlock - 1) / kBlock * kBlock);
+  farthest_ = 0.0F;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    lanes_.x[i] = source[i].x();
+    lanes_.y[i] = source[i].y();
+    lanes_.z[i] = source[i].z();
+    farthest_ = std::max(farthest_, source[i].norm());
+  }
 }
 
 std::span<const Correspondence> CorrespondenceCache::find(const Pose& T_target_source) {
-  place_source(T_target_source);
-  look_up();
+  find_awake(T_target_source);
+  look_up(T_target_source);
   search_unknown();
   pairs_.clear();
   const float squared_gate = gate_ * gate_;
-  for (std::size_t i = 0; i < source_.size(); ++i) {
-    const Nearest& nearest = nearest_[i];
+  for (std::size_t a = 0; a < awake_.size(); ++a) {
+    const Nearest& nearest = nearest_[a];
     if (nearest.squared_distance < squared_gate) {
-      const Neighbourhood& near = entries_[i].near;
+      const Neighbourhood& near = entries_[awake_[a]].near;
       pairs_.push_back(
-          {places_[i],
+          {places_[a],
            Eigen::Vector3f(near.x[nearest.lane], near.y[nearest.lane], near.z[nearest.lane]).cast<double>(),
            std::sqrt(static_cast<double>(nearest.squared_distance))});
     }
@@ -73,34 +93,58 @@ std::span<const Correspondence> CorrespondenceCache::find(const Pose& T_target_s
   return pairs_;
 }
 
-void CorrespondenceCache::place_source(const Pose& T_target_source) {
-  const Eigen::Matrix3d R = T_target_source.linear();
-  const Eigen::Vector3d t = T_target_source.translation();
-  for (std::size_t i = 0; i < source_.size(); ++i) {
-    places_[i] = R * source_[i].cast<double>() + t;
+// Lists the points that have moved too far to be surely without a partner.
+void CorrespondenceCache::find_awake(const Pose& T_target_source) {
+  const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
+  const Eigen::Vector3f t = T_target_source.translation().cast<float>();
+  const float rounding = kRoundingOfPlace * (farthest_ + t.norm());
+  awake_.clear();
+  for (std::size_t block = 0; block < lanes_.x.size(); block += kBlock) {
+    std::array<bool, kBlock> awake;
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+      const std::size_t i = block + lane;
+      const float x = lanes_.x[i];
+      const float y = lanes_.y[i];
+      const float z = lanes_.z[i];
+      const float dx = R(0, 0) * x + R(0, 1) * y + R(0, 2) * z + t.x() - lanes_.searched_x[i];
+      const float dy = R(1, 0) * x + R(1, 1) * y + R(1, 2) * z + t.y() - lanes_.searched_y[i];
+      const float dz = R(2, 0) * x + R(2, 1) * y + R(2, 2) * z + t.z() - lanes_.searched_z[i];
+      const float alone = lanes_.alone[i] - rounding;
+      awake[lane] = !(dx * dx + dy * dy + dz * dz < alone * std::abs(alone));
+    }
+    for (std::size_t lane = 0; lane < std::min(kBlock, source_.size() - block); ++lane) {
+      if (awake[lane]) {
+        awake_.push_back(static_cast<std::uint32_t>(block + lane));
+      }
+    }
   }
 }
 
 // Answers what can be answered from the last searches, lists the others in unknown_.
-void CorrespondenceCache::look_up() {
+void CorrespondenceCache::look_up(const Pose& T_target_source) {
+  const Eigen::Matrix3d R = T_target_source.linear();
+  const Eigen::Vector3d t = T_target_source.translation();
   const float squared_gate = gate_ * gate_;
   const float farthest = gate_ * (1.0F + kMargin);
+  places_.resize(awake_.size());
+  nearest_.resize(awake_.size());
   unknown_.clear();
   queries_.clear();
   radii_.clear();
-  for (std::size_t i = 0; i < source_.size(); ++i) {
-    const Entry& entry = entries_[i];
-    const Point q = places_[i].cast<float>();
+  for (std::size_t a = 0; a < awake_.size(); ++a) {
+    const Entry& entry = entries_[awake_[a]];
+    places_[a] = R * source_[awake_[a]].cast<double>() + t;
+    const Point q = places_[a].cast<float>();
     const float moved = (q - entry.searched_at).norm();
     const float clear = entry.near.clear_radius;
     const float reach = clear - moved - kRounding * (clear + moved);
-    nearest_[i] = entry.near.count > 0 ? nearest_of(entry.near, q) : Nearest{};
-    const bool known = reach > 0.0F && std::min(nearest_[i].squared_distance, squared_gate) < reach * reach;
+    nearest_[a] = entry.near.count > 0 ? nearest_of(entry.near, q) : Nearest{};
+    const bool known = reach > 0.0F && std::min(nearest_[a].squared_distance, squared_gate) < reach * reach;
     if (!known) {
-      unknown_.push_back(static_cast<std::uint32_t>(i));
+      unknown_.push_back(static_cast<std::uint32_t>(a));
       queries_.push_back(q);
       // The nearest one is at most as far away as the one known, which bounds the search from its start.
-      const float bound = std::sqrt(nearest_[i].squared_distance) + kNeighbourMargin;
+      const float bound = std::sqrt(nearest_[a].squared_distance) + kNeighbourMargin;
       radii_.push_back(std::min(bound, farthest));
     }
   }
@@ -110,10 +154,15 @@ void CorrespondenceCache::search_unknown() {
   answers_.resize(std::max(answers_.size(), queries_.size()));
   target_->neighbourhoods(queries_, radii_, margin_, std::span(answers_).first(queries_.size()));
   for (std::size_t u = 0; u < unknown_.size(); ++u) {
-    Entry& entry = entries_[unknown_[u]];
-    entry.near = answers_[u];
-    entry.searched_at = queries_[u];
-    nearest_[unknown_[u]] = entry.near.count > 0 ? nearest_of(entry.near, queries_[u]) : Nearest{};
+    const std::uint32_t a = unknown_[u];
+    const std::uint32_t i = awake_[a];
+    entries_[i] = {answers_[u], queries_[u]};
+    nearest_[a] = answers_[u].count > 0 ? nearest_of(answers_[u], queries_[u]) : Nearest{};
+    const float clear = std::min(std::sqrt(nearest_[a].squared_distance), answers_[u].clear_radius);
+    lanes_.searched_x[i] = queries_[u].x();
+    lanes_.searched_y[i] = queries_[u].y();
+    lanes_.searched_z[i] = queries_[u].z();
+    lanes_.alone[i] = clear - gate_ - kRounding * clear;
   }
   searches_ += unknown_.size();
   margin_ = kNeighbourMargin;

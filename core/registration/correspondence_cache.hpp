@@ -4,8 +4,9 @@
 // the nearest few target points and a radius within which there are no others. When the source point has
 // moved by m since, all others are at least (radius - m) away (triangle inequality): if one of the few is
 // nearer than that, it is the nearest of all; and if (radius - m) reaches the gate, there is no other.
+// Clutter, which has no partner from the first search to the last, is passed over many points at a time.
 // Frames: source in its own, target in the tree's; metres. No failure; points that are not finite have no
-// partner. Thread rule: one owner; scratch memory is kept. Cost: 180 bytes a source point.
+// partner. Thread rule: one owner; scratch memory is kept. Cost: 210 bytes a source point.
 #pragma once
 
 #include <cstddef>
@@ -52,9 +53,17 @@ class CorrespondenceCache {
     std::uint32_t lane = 0;  // in the entry's neighbourhood
   };
 
+  // Source points in lanes: where they are, where they were searched for, and how far from there they
+  // surely have no partner (m; negative: they may have one where they stand).
+  struct Lanes {
+    std::vector<float> x, y, z, searched_x, searched_y, searched_z, alone;
+
+    void reset(std::size_t size);
+  };
+
   [[nodiscard]] static Nearest nearest_of(const Neighbourhood& near, const Point& q);
-  void place_source(const Pose& T_target_source);
-  void look_up();
+  void find_awake(const Pose& T_target_source);
+  void look_up(const Pose& T_target_source);
   void search_unknown();
 
   float gate_;
@@ -63,9 +72,12 @@ class CorrespondenceCache {
   std::size_t searches_ = 0;
 
   std::vector<Entry> entries_;           // per source point
-  std::vector<Eigen::Vector3d> places_;  // per source point, in the target's frame
-  std::vector<Nearest> nearest_;         // per source point
-  std::vector<std::uint32_t> unknown_;   // source points to be searched for
+  Lanes lanes_;                          // per source point, filled up to whole blocks
+  float farthest_ = 0.0F;                // of the source points, from their origin, m
+  std::vector<std::uint32_t> awake_;     // source points that may have a partner, in order
+  std::vector<Eigen::Vector3d> places_;  // per source point that is awake, in the target's frame
+  std::vector<Nearest> nearest_;         // likewise
+  std::vector<std::uint32_t> unknown_;   // those to be searched for, by their place in awake_
   std::vector<Point> queries_;           // per unknown
   std::vector<float> radii_;             // per unknown: how far to search, m
   std::vector<Neighbourhood> answers_;   // per unknown

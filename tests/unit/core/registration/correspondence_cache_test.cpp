@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace hulltrack {
@@ -35,6 +36,24 @@ Pose shifted(double x, double z) {
   return T;
 }
 
+void expect_fresh(CorrespondenceCache& cache, const Cloud& source, const Cloud& target, const KdTree& tree,
+                  const Pose& T) {
+  const auto pairs = cache.find(T);
+  std::size_t at = 0;
+  for (const Point& p : source) {
+    const Eigen::Vector3d place = T.linear() * p.cast<double>() + T.translation();
+    const auto nearest = tree.nearest(place.cast<float>(), static_cast<float>(kGate));
+    if (nearest) {
+      ASSERT_LT(at, pairs.size());
+      EXPECT_EQ(pairs[at].source, place);
+      EXPECT_EQ(pairs[at].target, target[nearest->index].cast<double>());
+      EXPECT_EQ(pairs[at].distance, std::sqrt(static_cast<double>(nearest->squared_distance)));
+      ++at;
+    }
+  }
+  EXPECT_EQ(at, pairs.size());
+}
+
 TEST(CorrespondenceCache, EqualsAFreshSearchAtEveryStep) {
   const Plane plane;
   const KdTree tree(plane.target);
@@ -44,22 +63,35 @@ TEST(CorrespondenceCache, EqualsAFreshSearchAtEveryStep) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (int step = 0; step < 60; ++step) {
     const double size = step % 15 == 0 ? 0.4 : 0.01;  // small steps and now and then a large one
-    const Pose T = shifted(size * u(rng), size * u(rng));
-    const auto pairs = cache.find(T);
-    std::size_t at = 0;
-    for (const Point& p : plane.source) {
-      const Eigen::Vector3d place = T.linear() * p.cast<double>() + T.translation();
-      const auto nearest = tree.nearest(place.cast<float>(), static_cast<float>(kGate));
-      if (nearest) {
-        ASSERT_LT(at, pairs.size());
-        EXPECT_EQ(pairs[at].source, place);
-        EXPECT_EQ(pairs[at].target, plane.target[nearest->index].cast<double>());
-        EXPECT_EQ(pairs[at].distance, std::sqrt(static_cast<double>(nearest->squared_distance)));
-        ++at;
-      }
-    }
-    EXPECT_EQ(at, pairs.size());
+    expect_fresh(cache, plane.source, plane.target, tree, shifted(size * u(rng), size * u(rng)));
   }
+}
+
+// Far from the origin, where floats are coarse, a plane sinks onto the other and turns: points that had no
+// partner for many steps must get theirs at the very step at which they come within the gate.
+TEST(CorrespondenceCache, EqualsAFreshSearchAsCloudsMeetFarFromTheOrigin) {
+  Plane plane;
+  const Point far(310.0F, -240.0F, 35.0F);
+  for (Point& p : plane.target) {
+    p += far;
+  }
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<float> height(0.2F, 1.2F);
+  for (Point& p : plane.source) {
+    p = far + Point(p.x(), p.y(), height(rng));
+  }
+  plane.source.push_back(Point::Constant(std::numeric_limits<float>::quiet_NaN()));
+  const KdTree tree(plane.target);
+  CorrespondenceCache cache(kGate);
+  cache.reset(plane.source, tree);
+  const Eigen::Vector3d centre = far.cast<double>() + Eigen::Vector3d(3.0, 3.0, 0.0);
+  for (int step = 0; step < 150; ++step) {
+    const Eigen::Vector3d down(0.0, 0.0, -0.007 * step);
+    const Eigen::AngleAxisd turn(2e-4 * step, Eigen::Vector3d(1.0, 2.0, 2.0).normalized());
+    const Pose T = Eigen::Translation3d(centre + down) * turn * Eigen::Translation3d(-centre);
+    expect_fresh(cache, plane.source, plane.target, tree, T);
+  }
+  EXPECT_LT(cache.searches(), plane.source.size() * 150 / 5);
 }
 
 TEST(CorrespondenceCache, SearchesNoMoreWhenTheSourceHardlyMoves) {
