@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/cloud.hpp"
+#include "core/geometry/point_blocks.hpp"
 #include "core/map/surfel.hpp"
 #include "core/search/kdtree.hpp"
 
@@ -28,14 +29,14 @@ class HullMap {
   /// The metric subset, and for each of its points the surface around it.
   [[nodiscard]] const Cloud& subset_H() const { return subset_H_; }
   [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
-  [[nodiscard]] const Cloud& occluders_H() const { return occluders_H_; }
+  [[nodiscard]] const PointBlocks& occluders_H() const { return occluders_H_; }
 
  private:
   Cloud cloud_H_;
   KdTree tree_;
   Cloud subset_H_;
   std::vector<Surfel> surfels_;
-  Cloud occluders_H_;
+  PointBlocks occluders_H_;
 };
 
 }  // namespace hulltrack

@@ -47,9 +47,9 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
   }
 }
 
-void Visibility::render(std::span<const Point> occluders_H, const Pose& T_L_H, float range) {
+void Visibility::render(const PointBlocks& occluders_H, const Pose& T_L_H, float range) {
   cell_nearest_.assign(SphericalGrid::kCells, kNothing);
-  sight(occluders_H, T_L_H, [&](std::size_t, const Sightings& from_L, std::size_t i) {
+  occluders_H.sight_within(range, T_L_H, [&](const Sightings& from_L, std::size_t i) {
     float& nearest2 = cell_nearest_[from_L.cell[i]];
     nearest2 = std::min(nearest2, from_L.range2[i] <= range * range ? from_L.range2[i] : kNothing);
   });

@@ -34,7 +34,7 @@ class Visibility {
            std::vector<VisiblePoint>& out);
 
  private:
-  void render(std::span<const Point> occluders_H, const Pose& T_L_H, float range);
+  void render(const PointBlocks& occluders_H, const Pose& T_L_H, float range);
   void splat(SphericalGrid::Cell cell, float r);
 
   double metric_range_;

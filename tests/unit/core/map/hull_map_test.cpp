@@ -92,7 +92,7 @@ TEST(HullMap, SubsetAndOccludersAreOneRealPointAVoxel) {
   EXPECT_EQ(map.cloud_H().size(), cloud.size());
   EXPECT_EQ(map.tree().size(), cloud.size());
   expect_thinned(map.subset_H(), cloud, HullMap::kSubsetVoxel);
-  expect_thinned(map.occluders_H(), cloud, HullMap::kOccluderVoxel);
+  expect_thinned(map.occluders_H().points(), cloud, HullMap::kOccluderVoxel);
 }
 
 TEST(HullMap, SameCloudGivesTheSameSubset) {
