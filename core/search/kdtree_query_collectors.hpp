@@ -1,0 +1,182 @@
+// What does a search gather: the nearest point, the nearest few with a margin, the nearest k?
+//
+// A part of kdtree_query_body.hpp, which says what is special about it.
+
+HULLTRACK_TARGET inline std::uint32_t first_slot(std::uint32_t leaf) {
+  return leaf * static_cast<std::uint32_t>(kLeafSize);
+}
+
+// The nearest point.
+struct NearestCollector {
+  struct Task {
+    float limit;
+  };
+
+  float limit;
+  std::uint32_t slot;
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t) {
+    limit = task.limit;
+    slot = kNoSlot;
+  }
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const LeafDistances distances(q, layout.leaves[leaf]);
+    const float best = distances.least();
+    if (!(best <= limit)) {
+      return;
+    }
+    for (std::uint32_t mask = distances.within(best); mask != 0; mask &= mask - 1) {
+      const std::uint32_t candidate = first_slot(leaf) + static_cast<std::uint32_t>(__builtin_ctz(mask));
+      if (slot == kNoSlot || best < limit || layout.index[candidate] < layout.index[slot]) {
+        slot = candidate;
+        limit = best;
+      }
+    }
+  }
+
+  HULLTRACK_TARGET void finish(const Layout&, Hit& hit) const { hit = {slot, limit}; }
+};
+
+HULLTRACK_TARGET inline bool comes_before(const Layout& layout, const Hit& a, const Hit& b) {
+  return a.squared_distance < b.squared_distance ||
+         (a.squared_distance == b.squared_distance && layout.index[a.slot] < layout.index[b.slot]);
+}
+
+// Puts `hit` into its place among the best `count` so far; the last one drops out when they are full.
+HULLTRACK_TARGET inline std::size_t insert(const Layout& layout, const Hit& hit, std::span<Hit> hits,
+                                           std::size_t count) {
+  std::size_t at = count;
+  if (count == hits.size()) {
+    if (!comes_before(layout, hit, hits[count - 1])) {
+      return count;
+    }
+    at = count - 1;
+  } else {
+    ++count;
+  }
+  for (; at > 0 && comes_before(layout, hit, hits[at - 1]); --at) {
+    hits[at] = hits[at - 1];
+  }
+  hits[at] = hit;
+  return count;
+}
+
+// The nearest few points among those not farther than the nearest one and a margin. They are gathered
+// unsorted, which branches little; only when they are too many the nearest are sorted out.
+struct NeighbourhoodCollector {
+  static constexpr std::size_t kFew = Neighbourhood::kCapacity;
+  static constexpr std::size_t kRoom = kFew + kLeafSize;
+
+  struct Task {
+    const float* radii;  // per query, m
+    float margin;        // m
+  };
+
+  float limit;
+  float margin;
+  float clear_radius;
+  std::uint32_t count;
+  Hit hits[kRoom];
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t query) {
+    clear_radius = task.radii[query];
+    limit = limit_below(clear_radius);
+    margin = task.margin;
+    count = 0;
+  }
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const LeafDistances distances(q, layout.leaves[leaf]);
+    const float best = distances.least();
+    if (!(best <= limit)) {
+      return;
+    }
+    const float reach = __builtin_sqrtf(best) + margin;
+    const float squared_reach = reach * reach > best ? reach * reach : best;  // never below by rounding
+    if (squared_reach < limit) {
+      limit = squared_reach;
+      clear_radius = reach;
+    }
+    if (count > kFew) {
+      keep_few(layout);
+    }
+    for (std::size_t i = 0; i < kLeafSize; i += kCacheLine / sizeof(std::uint32_t)) {
+      __builtin_prefetch(&layout.index[first_slot(leaf) + i]);  // finish() will want it
+    }
+    alignas(32) float squared[kLeafSize];
+    distances.store_to(squared);
+    for (std::uint32_t mask = distances.within(limit); mask != 0; mask &= mask - 1) {
+      const auto position = static_cast<std::uint32_t>(__builtin_ctz(mask));
+      hits[count++] = {first_slot(leaf) + position, squared[position]};
+    }
+  }
+
+  // Drops what the limit has overtaken and, if still necessary, all but the nearest few.
+  HULLTRACK_TARGET void keep_few(const Layout& layout) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      hits[kept] = hits[i];
+      kept += hits[i].squared_distance <= limit ? 1U : 0U;
+    }
+    count = kept;
+    if (count > kFew) {
+      std::size_t sorted = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const Hit hit = hits[i];
+        sorted = insert(layout, hit, std::span<Hit>(hits, kFew), sorted);
+      }
+      count = kFew;
+      limit = hits[kFew - 1].squared_distance;
+      clear_radius = __builtin_sqrtf(limit);
+    }
+  }
+
+  HULLTRACK_TARGET void finish(const Layout& layout, Neighbourhood& out) {
+    keep_few(layout);
+    for (std::uint32_t i = 0; i < kFew; ++i) {
+      out.x[i] = out.y[i] = out.z[i] = __builtin_inff();
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Leaf& leaf = layout.leaves[hits[i].slot / kLeafSize];
+      const std::size_t position = hits[i].slot % kLeafSize;
+      out.x[i] = leaf.x[position];
+      out.y[i] = leaf.y[position];
+      out.z[i] = leaf.z[position];
+      out.index[i] = layout.index[hits[i].slot];
+    }
+    out.count = count;
+    out.clear_radius = clear_radius;
+  }
+};
+
+// The nearest k points, nearest first.
+struct KNearestCollector {
+  struct Task {
+    float limit;
+    std::span<Hit> hits;
+  };
+
+  float limit;
+  std::span<Hit> hits;
+  std::size_t count;
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t) {
+    limit = task.limit;
+    hits = task.hits;
+    count = 0;
+  }
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const LeafDistances distances(q, layout.leaves[leaf]);
+    alignas(32) float squared[kLeafSize];
+    distances.store_to(squared);
+    for (std::uint32_t mask = distances.within(limit); mask != 0; mask &= mask - 1) {
+      const auto position = static_cast<std::uint32_t>(__builtin_ctz(mask));
+      count = insert(layout, {first_slot(leaf) + position, squared[position]}, hits, count);
+    }
+    if (count == hits.size()) {
+      limit = hits[count - 1].squared_distance;
+    }
+  }
+};
