@@ -36,6 +36,7 @@ Requires=basic.target dbus.service
 After=basic.target dbus.service
 [Service]
 Type=oneshot
+ExecStartPre=systemd-sysusers hulltrackd.conf
 ExecStart=/usr/bin/python3 /opt/service_manager_probe.py
 StandardOutput=append:/root/probe.txt
 StandardError=append:/root/probe.txt
@@ -43,9 +44,10 @@ ExecStopPost=/bin/sh -c 'echo $EXIT_STATUS > /root/exit_status; exec systemctl p
 """
 PASSWD = "root:x:0:0::/root:/bin/sh\nmessagebus:x:100:100::/:/usr/sbin/nologin\n"
 GROUP = "root:x:0:\nmessagebus:x:100:\nsystemd-journal:x:101:\n"
-USER = "hulltrackd:x:998:"
-# Nothing in the container waits for a network, and nothing needs one.
-MASKED = ("systemd-networkd.service", "systemd-networkd-wait-online.service", "systemd-resolved.service")
+# Nothing in the container waits for a network, and nothing needs one. The user is made as the manual says, not by
+# the boot.
+MASKED = ("systemd-networkd.service", "systemd-networkd-wait-online.service", "systemd-resolved.service",
+          "systemd-sysusers.service")
 PATIENCE_S = 400
 
 
@@ -70,8 +72,10 @@ def furnish(root, hulltrackd, room_lidar, support, unit):
     for link in ("bin", "sbin", "lib", "lib64"):
         (root / link).symlink_to(f"usr/{link}")
     shutil.copy("/usr/lib/os-release", root / "etc/os-release")
-    write(root / "etc/passwd", PASSWD + USER + "998::/:/usr/sbin/nologin\n")
-    write(root / "etc/group", GROUP + USER + "\n")
+    write(root / "etc/passwd", PASSWD)
+    write(root / "etc/group", GROUP)
+    (root / "etc/sysusers.d").mkdir()
+    shutil.copy(unit.with_suffix(".sysusers"), root / "etc/sysusers.d/hulltrackd.conf")
     write(root / "etc/machine-id", "uninitialized\n")
     units = root / "etc/systemd/system"
     text = unit.read_text(encoding="utf-8")
