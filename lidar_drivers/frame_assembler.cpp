@@ -169,7 +169,11 @@ void FrameAssembler::advance(MeasurementTime now) {
 }
 
 void FrameAssembler::finish() {
-  while (current_.used || next_.used) close_current();
+  while (current_.used || next_.used) {
+    const bool unfinished_turn = framing_ == Framing::revolution && newest_ < current_.scan.end;
+    if (unfinished_turn) current_.used = false;
+    close_current();
+  }
 }
 
 void FrameAssembler::close_current() {

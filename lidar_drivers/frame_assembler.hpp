@@ -42,7 +42,7 @@ class FrameAssembler {
 
   /// Finishes frames that ended more than 20 ms before `now`.
   void advance(MeasurementTime now);
-  /// Finishes what is open.
+  /// Finishes what is open. Revolution framing: a turn that no cut ended is left out.
   void finish();
 
   /// Swaps out the oldest finished frame; false when there is none.

@@ -67,7 +67,7 @@ class ScanBuilder {
   /// clock of the stamps: live, read it before draining the sources, or what still waits there comes late.
   void advance(MeasurementTime now);
 
-  /// The recording is at its end: finishes what is open.
+  /// The recording is at its end: finishes what is open. Revolution framing leaves an unfinished turn out.
   void finish();
 
   /// Hands out the oldest finished frame by swapping: `out`'s old buffers are used again. False when there

@@ -65,6 +65,7 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
   if (!frame || !*frame) {
     return frame;
   }
+  any_frame_ = true;
   play_plc_until(scan.segments.empty() ? scan.end : scan.last_firing);
   played_ = scan.end;
   const bool frozen =
@@ -78,7 +79,9 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
 Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
   while (!builder_.take(scan)) {
     if (at_end_) {
-      return false;
+      return any_frame_ ? Result<bool>(false)
+                        : Error{pcap_name_ +
+                                ": holds no complete frame, less than one turn of the LiDAR; record longer"};
     }
     Datagram datagram;
     const Result<bool> more = source_.next(datagram);

@@ -60,6 +60,7 @@ class RecordingPlayer {
   DatagramRouter router_;
   ScanBuilder builder_;
   bool at_end_ = false;
+  bool any_frame_ = false;
   std::uint64_t datagrams_ = 0;  // for one of the LiDARs
   MeasurementTime first_datagram_{}, last_datagram_{};
 

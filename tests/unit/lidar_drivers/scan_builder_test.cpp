@@ -82,6 +82,16 @@ void expect_consistent(const Scan& scan) {
   EXPECT_EQ(next, scan.points.size());
 }
 
+/// What of `stream` must be in `scans`: everything, but with revolution framing for the unfinished last turn.
+std::vector<std::int64_t> framed_times(const test::VelodyneStream& stream, const std::vector<Scan>& scans,
+                                       Framing framing) {
+  std::vector<std::int64_t> times = firing_times(stream);
+  if (framing == Framing::revolution) {
+    std::erase_if(times, [&](std::int64_t time) { return time >= to_ns(scans.back().end); });
+  }
+  return times;
+}
+
 TEST(ScanBuilder, EveryPointIsInExactlyOneFrameAtItsFiringTime) {
   for (const char* model : {"velodyne_vlp16", "velodyne_vlp32c"}) {
     for (const Framing framing : {Framing::period, Framing::revolution}) {
@@ -91,7 +101,7 @@ TEST(ScanBuilder, EveryPointIsInExactlyOneFrameAtItsFiringTime) {
       auto builder = builder_for({lidar(model)}, framing);
       const auto scans = build(builder, stream.packets);
       EXPECT_GT(scans.size(), 5U);
-      EXPECT_EQ(point_times(scans), firing_times(stream));
+      EXPECT_EQ(point_times(scans), framed_times(stream, scans, framing));
       for (const Scan& scan : scans) expect_consistent(scan);
       EXPECT_EQ(builder.status(0).points_late, 0U);
       EXPECT_EQ(builder.status(0).packets_lost, 0U);
@@ -144,13 +154,28 @@ TEST(ScanBuilder, RevolutionsEndWhereTheRotorPassesZero) {
   auto builder = builder_for({lidar()}, Framing::revolution);
   const auto scans = build(builder, stream.packets);
   ASSERT_GT(scans.size(), 10U);
-  for (std::size_t k = 1; k + 1 < scans.size(); ++k) {
+  for (std::size_t k = 1; k < scans.size(); ++k) {
     // At 600 rpm from 180 deg on: zero after 50 ms, then every 100 ms. Azimuths are rounded to 0.01 deg = 2.8
     // us.
     const MeasurementTime expected = options.start + milliseconds(50) + (k - 1) * milliseconds(100);
     EXPECT_NEAR(to_milliseconds(scans[k].begin - expected), 0.0, 0.006);
     EXPECT_NEAR(to_milliseconds(scans[k].end - scans[k].begin), 100.0, 0.012);
   }
+}
+
+TEST(ScanBuilder, AnUnfinishedLastTurnIsNoFrame) {
+  test::StreamOptions options{.packets = 1000};
+  options.encoder.start_azimuth = std::numbers::pi;
+  const auto stream = test::make_stream(options);
+  auto builder = builder_for({lidar()}, Framing::revolution);
+  const auto scans = build(builder, stream.packets);
+  const MeasurementTime end = stream.packets.back().last_firing;
+  EXPECT_GT(end, scans.back().end);
+  EXPECT_LT(end - scans.back().end, milliseconds(100)) << "but every whole turn is one";
+
+  const auto short_stream = test::make_stream({.packets = 40});
+  auto short_builder = builder_for({lidar()}, Framing::revolution);
+  EXPECT_TRUE(build(short_builder, short_stream.packets).empty());
 }
 
 TEST(ScanBuilder, AWrongRotationRateIsReportedAndFramesStayWhole) {
@@ -161,7 +186,7 @@ TEST(ScanBuilder, AWrongRotationRateIsReportedAndFramesStayWhole) {
     for (const Framing framing : {Framing::period, Framing::revolution}) {
       auto builder = builder_for({lidar()}, framing);
       const auto scans = build(builder, stream.packets);
-      EXPECT_EQ(point_times(scans), firing_times(stream));
+      EXPECT_EQ(point_times(scans), framed_times(stream, scans, framing));
       EXPECT_NEAR(builder.status(0).rpm, rpm, 0.01 * rpm);
       if (framing == Framing::revolution) {
         EXPECT_NEAR(to_milliseconds(scans[3].end - scans[3].begin), 60'000.0 / rpm, 0.1);
