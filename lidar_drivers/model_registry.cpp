@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include "lidar_drivers/velodyne/velodyne_decoder.hpp"
 
@@ -37,6 +38,13 @@ const LidarModel* find_lidar_model(std::string_view name) {
   const auto models = lidar_models();
   const auto it = std::ranges::find(models, name, &LidarModel::name);
   return it == models.end() ? nullptr : &*it;
+}
+
+Result<std::unique_ptr<Decoder>> make_lidar_decoder(const LidarModel& model, const DecoderOptions& options,
+                                                    const std::filesystem::path& calibration) {
+  if (!model.needs_calibration && !calibration.empty())
+    return Error{std::string(model.name) + " takes no calibration file; leave it out"};
+  return model.make_decoder(options, calibration);
 }
 
 }  // namespace hulltrack

@@ -23,6 +23,7 @@ struct LidarModel {
   double range;            // m, the maker's statement
   int channels;
   bool needs_calibration;  // a file must be given
+  /// Through make_lidar_decoder().
   Result<std::unique_ptr<Decoder>> (*make_decoder)(const DecoderOptions&,
                                                    const std::filesystem::path& calibration);
 };
@@ -32,5 +33,10 @@ struct LidarModel {
 
 /// nullptr when there is none of that name.
 [[nodiscard]] const LidarModel* find_lidar_model(std::string_view name);
+
+/// An error says that a calibration file is unusable, missing, or given to a model that takes none.
+[[nodiscard]] Result<std::unique_ptr<Decoder>> make_lidar_decoder(const LidarModel& model,
+                                                                  const DecoderOptions& options,
+                                                                  const std::filesystem::path& calibration);
 
 }  // namespace hulltrack

@@ -43,7 +43,7 @@ Result<ScanBuilder> ScanBuilder::create(const std::vector<LidarConfig>& lidars,
                    "\"; `hulltrack models` lists the known ones"};
     }
     const DecoderOptions options{.firing_correction = config.firing_correction};
-    auto decoder = model->make_decoder(options, config.calibration);
+    auto decoder = make_lidar_decoder(*model, options, config.calibration);
     if (!decoder) return Error{"lidar \"" + config.name + "\": " + decoder.error().message};
     const Nanoseconds wrap = decoder.value()->clock_wrap();
     Lidar lidar{.config = config, .decoder = std::move(decoder).value(), .sequence = PacketSequence(wrap)};

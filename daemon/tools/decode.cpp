@@ -138,11 +138,44 @@ const LidarModel& model_of(const DecodeOptions& options) {
                                   " (`hulltrack models` lists them)");
 }
 
-std::unique_ptr<PointFile> open_output(const std::filesystem::path& path) {
-  if (path.extension() == ".csv") return std::make_unique<CsvPointFile>(path);
-  if (path.extension() == ".pcd") return std::make_unique<PcdPointFile>(path);
-  throw ToolError(kExitUsage, "--out " + path.string() + ": the name must end in .csv or .pcd");
-}
+/// The file of --out: written under a temporary name beside it, which is gone again without commit().
+class PendingOutput {
+ public:
+  explicit PendingOutput(const DecodeOptions& options)
+      : path_(options.out), temporary_(options.out.string() + ".part") {
+    const auto kind = path_.extension();
+    if (kind != ".csv" && kind != ".pcd")
+      throw ToolError(kExitUsage, "--out " + path_.string() + ": the name must end in .csv or .pcd");
+    std::error_code differ;  // or one of them does not exist
+    for (const std::string& input : {options.capture, options.calibration})
+      if (std::filesystem::equivalent(input, path_, differ))
+        throw ToolError(kExitUsage,
+                        "--out " + path_.string() + ": is what it reads from; choose another name");
+    if (kind == ".csv")
+      points_ = std::make_unique<CsvPointFile>(temporary_);
+    else
+      points_ = std::make_unique<PcdPointFile>(temporary_);
+  }
+  PendingOutput(const PendingOutput&) = delete;
+  PendingOutput& operator=(const PendingOutput&) = delete;
+  ~PendingOutput() {
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+  }
+
+  PointFile& points() { return *points_; }
+
+  void commit() {
+    points_->finish();
+    std::error_code failure;
+    std::filesystem::rename(temporary_, path_, failure);
+    if (failure) throw ToolError(path_.string() + ": cannot be put in place: " + failure.message());
+  }
+
+ private:
+  std::filesystem::path path_, temporary_;
+  std::unique_ptr<PointFile> points_;
+};
 
 /// What the capture held, for the summary and for telling why nothing was found.
 struct DecodeTally {
@@ -210,25 +243,25 @@ void decode(const DecodeOptions& options) {
   const DecoderOptions decoder_options{.firing_correction = !options.no_firing_correction,
                                        .vertical_offset = !options.no_vertical_offset,
                                        .repeated_echoes = true};
-  const auto decoder = model.make_decoder(decoder_options, options.calibration);
+  const auto decoder = make_lidar_decoder(model, decoder_options, options.calibration);
   if (!decoder) throw ToolError("--calibration: " + decoder.error().message);
   auto capture = PcapSource::open(options.capture, filter);
   if (!capture) throw ToolError(capture.error().message);
 
-  const auto out = open_output(options.out);
+  PendingOutput out(options);
   DecodeTally tally;
   DecodedPacket packet;
   Datagram datagram;
   auto more = capture->next(datagram);
   for (; more && *more; more = capture->next(datagram))
-    decode_datagram(**decoder, datagram, packet, *out, tally);
-  out->finish();
+    decode_datagram(**decoder, datagram, packet, out.points(), tally);
 
-  if (tally.decoded > 0) print_summary(options, **decoder, tally);
+  if (tally.decoded > 0) {
+    out.commit();
+    print_summary(options, **decoder, tally);
+  }
   if (!more) throw ToolError(more.error().message);
   if (tally.decoded > 0) return;
-  if (std::filesystem::is_regular_file(options.out))
-    std::filesystem::remove(options.out);  // it holds no point
   if (tally.rejected == 0) throw ToolError(capture->explain_nothing_found());
   throw ToolError(options.capture + ": none of " + std::to_string(tally.rejected) +
                   " datagrams to UDP port " + std::to_string(*filter.port) + " is of a " +

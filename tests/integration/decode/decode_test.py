@@ -107,6 +107,8 @@ def check_refusals(tool, capture, folder):
         ((capture, "--model", "velodyne_vlp16", "--out", folder / "x.txt"), 2, ".csv or .pcd"),
         ((capture, "--model", "velodyne_vlp16", "--source", "here", "--out", out), 2, "no IPv4 address"),
         ((capture, "--out", out), 2, "--model is required"),
+        ((capture, "--model", "velodyne_vlp16", "--calibration", capture, "--out", out), 1,
+         "velodyne_vlp16 takes no calibration file"),
     ]
     for arguments, code, words in cases:
         run = decode(tool, *arguments)
@@ -117,6 +119,24 @@ def check_refusals(tool, capture, folder):
     assert out.read_text().splitlines()[-1].startswith("78,"), "what came before the cut is kept"
 
 
+def check_what_was_there_before(tool, capture, folder):
+    """Only points replace an old file, and the capture is never written over."""
+    link, old = folder / "capture.csv", folder / "old.csv"
+    link.symlink_to(capture)
+    before = capture.read_bytes()
+    old.write_text("yesterday's points")
+    for arguments, words in (((capture, "--out", link), "is what it reads from"),
+                             ((capture, "--port", 99, "--out", old), "UDP ports seen"),
+                             ((pathlib.Path(__file__), "--out", old), "not a capture")):
+        run = decode(tool, *arguments, "--model", "velodyne_vlp16")
+        assert run.returncode != 0 and words in run.stderr, (arguments, run.returncode, run.stderr)
+        assert run.stderr.count("\n") == 1, run.stderr
+    assert capture.read_bytes() == before and old.read_text() == "yesterday's points"
+    assert decode(tool, capture, "--model", "velodyne_vlp16", "--out", old).returncode == 0
+    assert old.read_text().startswith("packet,channel,")
+    assert not list(folder.glob("*.part"))
+
+
 def main():
     tool, shared = sys.argv[1], pathlib.Path(sys.argv[2])
     with tempfile.TemporaryDirectory() as name:
@@ -124,6 +144,7 @@ def main():
         made = made_capture(folder / "made.pcap")
         check_capture(tool, made, folder)
         check_refusals(tool, made, folder)
+        check_what_was_there_before(tool, made, folder)
         real = shared / "lidar" / "velodyne_vlp16" / "packets.pcap"
         if real.exists():
             check_capture(tool, real, folder)

@@ -108,7 +108,7 @@ TEST(VelodyneEncoder, RangesThatTheFormatCannotHoldBecomeNoReturn) {
 TEST(ModelRegistry, EveryModelMakesItsDecoderAndHasItsOwnName) {
   for (const LidarModel& model : lidar_models()) {
     EXPECT_EQ(find_lidar_model(model.name), &model);
-    EXPECT_TRUE(model.make_decoder({}, {}).ok()) << model.name;
+    EXPECT_TRUE(make_lidar_decoder(model, {}, {}).ok()) << model.name;
     EXPECT_EQ(model.port, 2368);
   }
   EXPECT_EQ(find_lidar_model("velodyne"), nullptr);
