@@ -164,13 +164,6 @@ void ScanBuilder::note_packet(Lidar& lidar, MeasurementTime time) {
   ++lidar.window.packets;
 }
 
-void ScanBuilder::add_receive_counts(std::size_t lidar, std::uint32_t foreign,
-                                     std::uint32_t kernel_overflows) {
-  LidarFrameCounters& counters = frames_.counters(lidar);
-  counters.packets_rejected += foreign;
-  counters.kernel_overflows += kernel_overflows;
-}
-
 void ScanBuilder::advance(MeasurementTime now) { frames_.advance(now); }
 
 void ScanBuilder::finish() { frames_.finish(); }

@@ -60,9 +60,6 @@ class ScanBuilder {
   /// Decodes one datagram of LiDAR `lidar` (index of the configuration's list) and sorts its points in.
   DecodeOutcome add(std::size_t lidar, const Datagram& datagram);
 
-  /// Counts of the receiver since the last call, for the counters of the frame that is being filled.
-  void add_receive_counts(std::size_t lidar, std::uint32_t foreign, std::uint32_t kernel_overflows);
-
   /// Finishes frames that ended more than 20 ms before `now` although nothing more arrived. `now` is on the
   /// clock of the stamps: live, read it before draining the sources, or what still waits there comes late.
   void advance(MeasurementTime now);

@@ -18,7 +18,7 @@ JointLimits limits_in_radians(const JointRegister& joint) {
 Faults packet_faults(const Scan& scan) {
   Faults faults = 0;
   for (const LidarFrameCounters& lidar : scan.lidars) {
-    if (lidar.packets_lost > 0 || lidar.kernel_overflows > 0) {
+    if (lidar.packets_lost > 0) {
       faults |= fault::frame_incomplete;
     }
     if (lidar.packets_rejected > 0) {

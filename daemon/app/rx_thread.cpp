@@ -110,7 +110,9 @@ void RxThread::receive(std::size_t socket) {
     const std::span<const Datagram> datagrams = value_or_throw(sockets_[socket].receive());
     for (const Datagram& datagram : datagrams) {
       if (const auto lidar = router_.lidar_of(datagram)) {
-        builder_.add(*lidar, datagram);
+        if (!builder_.add(*lidar, datagram).ok()) {
+          exchange_.events.raise(fault::foreign_packets);
+        }
         last_received_ = live_steady_time(datagram.received);
         hand_over_scans();
       }
@@ -119,26 +121,19 @@ void RxThread::receive(std::size_t socket) {
       break;
     }
   }
-  pass_on_counters(socket);
+  tell_of_counters(socket);
 }
 
-void RxThread::pass_on_counters(std::size_t socket) {
+void RxThread::tell_of_counters(std::size_t socket) {
   const UdpCounters& counters = sockets_[socket].counters();
   SocketMemory& memory = memories_[socket];
-  const auto foreign = static_cast<std::uint32_t>(counters.foreign - memory.foreign);
-  const auto overflows = static_cast<std::uint32_t>(counters.kernel_overflows - memory.kernel_overflows);
-  if (foreign == 0 && overflows == 0) {
-    return;
+  if (counters.foreign > memory.foreign) {
+    exchange_.events.raise(fault::foreign_packets);
+  }
+  if (counters.kernel_overflows > memory.kernel_overflows) {
+    exchange_.events.raise(fault::frame_incomplete);
   }
   memory = {counters.foreign, counters.kernel_overflows};
-  exchange_.events.raise(static_cast<Faults>((foreign > 0 ? fault::foreign_packets : 0) |
-                                             (overflows > 0 ? fault::frame_incomplete : 0)));
-  for (std::size_t lidar = 0; lidar < lidars_.size(); ++lidar) {
-    if (socket_of_[lidar] == socket) {
-      builder_.add_receive_counts(lidar, foreign, overflows);
-      return;  // which of the LiDARs on this socket was meant, nobody knows
-    }
-  }
 }
 
 void RxThread::hand_over_scans() {

@@ -29,7 +29,7 @@ class RxThread {
   void run(std::stop_token stop);
 
  private:
-  /// What of a socket's counters has been passed on.
+  /// What of a socket's counters has been told.
   struct SocketMemory {
     std::uint64_t foreign = 0;
     std::uint64_t kernel_overflows = 0;
@@ -38,7 +38,7 @@ class RxThread {
   /// Sleeps until datagrams wait, takes them all; gives when it woke: nothing older is left in the sockets.
   SteadyTime receive_waiting();
   void receive(std::size_t socket);
-  void pass_on_counters(std::size_t socket);
+  void tell_of_counters(std::size_t socket);
   void hand_over_scans();
   void look_at_lidars(SteadyTime now);
   void add_figures();

@@ -3,8 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <string_view>
 
 #include "tests/integration/service/loader_bench.hpp"
 #include "tests/support/free_port.hpp"
@@ -44,6 +48,17 @@ class SessionTest : public testing::Test {
   }
   std::optional<WriteBlock> fault_after(sim::PlcFault of_plc, int times, Faults bit) {
     return fault_after([&] { plc->server().set_fault(of_plc, times); }, bit);
+  }
+
+  void send_to_lidar_port(std::string_view bytes) const {
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(lidar_port);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(sendto(fd, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to),
+              static_cast<ssize_t>(bytes.size()));
+    close(fd);
   }
 
   /// Waits until `count` more writes have failed.
@@ -124,6 +139,28 @@ TEST_F(SessionTest, AForeignSenderIsNamedAndChangesNothing) {
   EXPECT_NEAR(block->x_m, 0.0, 0.05);
   session.reset();
   EXPECT_GE(log.count("127.0.0.2:"), 1U);
+}
+
+TEST_F(SessionTest, PacketsOfAnotherModelAreToldAlthoughNoFrameComesOfThem) {
+  Prepared other = room_service(lidar_port, plc_port);
+  other.config.lidars.front().model = "velodyne_vlp32c";
+  session = std::make_unique<Session>(other, log, fail, 0);
+  const auto told =
+      wait_for([](const WriteBlock& block) { return (block.faults & fault::foreign_packets) != 0; });
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->state, State::starting);
+  session.reset();
+  EXPECT_GE(log.count("not those of a velodyne_vlp32c"), 1U);
+}
+
+TEST_F(SessionTest, AMalformedPacketIsToldWhileTheLidarIsSilent) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  ASSERT_TRUE(fault_after([this] { lidar.mute(true); }, fault::lidar_silent));
+  const auto told =
+      fault_after([this] { send_to_lidar_port("no packet of a LiDAR"); }, fault::foreign_packets);
+  ASSERT_TRUE(told);
+  EXPECT_NE(told->faults & fault::lidar_silent, 0);
 }
 
 TEST_F(SessionTest, StartsWithoutAPlcAndServesItOnceItIsThere) {
