@@ -223,6 +223,8 @@ LinkResult ModbusLink::write(int address, std::span<const std::uint16_t> registe
       [&](modbus_t* context) { return modbus_write_registers(context, address, count, registers.data()); });
 }
 
+void ModbusLink::end_back_off() { impl_->retry_at = {}; }
+
 bool ModbusLink::connected() const { return impl_->connected(); }
 std::uint64_t ModbusLink::connections() const { return impl_->connections; }
 

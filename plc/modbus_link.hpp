@@ -66,6 +66,9 @@ class ModbusLink {
   [[nodiscard]] LinkResult read(int address, std::span<std::uint16_t> registers, const char* key);
   [[nodiscard]] LinkResult write(int address, std::span<const std::uint16_t> registers, const char* key);
 
+  /// The next call tries to connect even if it is too early: for the last word of a service that ends.
+  void end_back_off();
+
   [[nodiscard]] bool connected() const;
   /// Connections made so far: grows by one with every reconnect.
   [[nodiscard]] std::uint64_t connections() const;

@@ -69,6 +69,9 @@ class PlcClient {
   /// read first: then a foreign hand had the longest time to show.
   [[nodiscard]] PlcWrite write(const WriteBlock& block);
 
+  /// The next request is tried whenever the last one failed.
+  void end_back_off() { link_.end_back_off(); }
+
   /// Our heartbeat of the last write that was tried.
   [[nodiscard]] std::uint16_t heartbeat() const { return heartbeat_; }
   [[nodiscard]] bool connected() const { return link_.connected(); }

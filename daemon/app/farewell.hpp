@@ -1,17 +1,22 @@
-// The last write of a service that has no plc thread any more: health 0, state stopped.
+// The last write of a service that ends: health 0, state stopped.
 //
-// For the one case in which a reload can end in nothing: neither the new nor the old configuration could be
-// put in force. The registers still hold what the last session left, maybe health 1; that must not stand
-// until the PLC's own timer notices. Thread rule: main thread. Cost: at most two response timeouts.
-// Failure: the outcome of the write; nobody is left who could try again.
+// The registers may hold health 1 until it succeeds, and nobody is left who could try later. So it is tried
+// twice, without back-off; what then remains is the PLC's own watch on the heartbeat, and the log says so.
+// Thread rule: the client's owner. Cost: at most four response timeouts, and no second attempt when the
+// first has taken a second: the service manager does not wait for ever (TimeoutStopSec= of the unit).
+// Failure: the outcome of the last attempt.
 #pragma once
 
-#include "core/base/time.hpp"
+#include <string>
+
 #include "plc/plc_client.hpp"
 
 namespace hulltrack {
 
-/// `last`: the registers as they were left at `left_at`; `heartbeat`: the last one written.
-PlcWrite write_farewell(const PlcConfig& plc, WriteBlock last, SteadyTime left_at, std::uint16_t heartbeat);
+/// `block`: what stands beside health 0 and state stopped.
+[[nodiscard]] PlcWrite write_farewell(PlcClient& client, WriteBlock block);
+
+/// What the PLC knows after it, for the log: a clause.
+[[nodiscard]] std::string farewell_words(const PlcWrite& farewell);
 
 }  // namespace hulltrack

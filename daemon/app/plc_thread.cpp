@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "daemon/app/farewell.hpp"
 #include "daemon/app/frame_pipeline.hpp"
 #include "daemon/app/live_time.hpp"
 
@@ -21,15 +22,18 @@ SteadyTime next_on_grid(SteadyTime due, Nanoseconds period, SteadyTime now) {
 }  // namespace
 
 PlcThread::PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log,
-                     std::uint16_t heartbeat)
+                     const RegisterMemory& before)
     : exchange_(exchange),
       pulse_(pulse),
       config_(config.plc),
-      client_(config.plc, {}, heartbeat),
+      client_(config.plc, {}, before.heartbeat),
       gate_(joint_gate_config(config.plc)),
-      publication_(config.tracker.health.max_age),
+      publication_(before.publication),
+      command_(before.command),
       watch_(config.plc, log, steady_now()),
-      state_log_(log) {}
+      state_log_(log) {
+  publication_.begin_anew(config.tracker.health.max_age);
+}
 
 void PlcThread::run(std::stop_token stop) {
   try {
@@ -131,7 +135,10 @@ void PlcThread::write(bool stopped) {
   publication_.events(events, now);
   view_.standing = watch_.standing(now);
   const WriteBlock block = publication_.block(context(stopped, now), now);
-  const PlcWrite written = client_.write(block);
+  const PlcWrite written = stopped ? write_farewell(client_, block) : client_.write(block);
+  if (stopped) {
+    farewell_ = written;
+  }
   watch_.wrote(written, steady_now());
   exchange_.registers.put(block);
   state_log_.update(block, reason_, now);

@@ -3,7 +3,7 @@
 // Polls on a fixed grid of poll_period, writes at once when a frame is done and never less often than
 // write_period. It computes the age of the pose and takes the health away by itself (publication.hpp), so
 // that a stuck tracker can never look healthy. An unreachable PLC costs nothing but its response timeout.
-// When asked to stop as a service it writes health 0, state 7 last, also after an exception.
+// When asked to stop as a service it writes health 0, state 7 last, also after an exception (farewell.hpp).
 // Thread rule: run() in a thread of its own.
 #pragma once
 
@@ -21,16 +21,28 @@
 
 namespace hulltrack {
 
+/// What the registers say, for the next session to go on from: a reload is no restart for the PLC.
+struct RegisterMemory {
+  std::uint16_t heartbeat = 0;  // the last one written
+  Publication publication{Nanoseconds{0}};
+  CommandLatch command;
+};
+
 class PlcThread {
  public:
-  /// Does not connect. References must outlive this object. `heartbeat`: the last one that was written.
-  PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log, std::uint16_t heartbeat);
+  /// Does not connect. References must outlive this object. `before`: of the session before, if any.
+  PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log,
+            const RegisterMemory& before);
 
   void run(std::stop_token stop);
 
   /// A reload: somebody else goes on writing, so the last write does not say "stopped".
   void leave_without_last_write() { last_write_ = false; }
-  [[nodiscard]] std::uint16_t heartbeat() const { return client_.heartbeat(); }
+
+  // Once run() has returned:
+  [[nodiscard]] RegisterMemory memory() const { return {client_.heartbeat(), publication_, command_}; }
+  /// How the last write, which says "stopped", went.
+  [[nodiscard]] const PlcWrite& farewell() const { return farewell_; }
 
  private:
   void poll();
@@ -56,6 +68,7 @@ class PlcThread {
   std::string reason_;                  // the newest frame's
   SteadyTime last_written_{};
   std::atomic<bool> last_write_ = true;
+  PlcWrite farewell_;
 };
 
 }  // namespace hulltrack

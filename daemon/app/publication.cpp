@@ -1,5 +1,7 @@
 #include "daemon/app/publication.hpp"
 
+#include <utility>
+
 #include "daemon/app/command_word.hpp"
 
 namespace hulltrack {
@@ -35,9 +37,17 @@ void put_metrics(const TrackResult& newest, WriteBlock& block) {
 
 }  // namespace
 
+void Publication::begin_anew(Nanoseconds max_age) {
+  max_age_ = max_age;
+  if (std::exchange(any_frame_, false)) {
+    frames_before_ = newest_.frame + 1;
+  }
+}
+
 void Publication::frame(const TrackResult& result, SteadyTime now, Nanoseconds processing) {
   any_frame_ = true;
   newest_ = result;
+  newest_.frame += frames_before_;
   processing_ = processing;
   events(result.faults & fault::events, now);
 }

@@ -29,6 +29,10 @@ class Publication {
 
   explicit Publication(Nanoseconds max_age) : max_age_(max_age) {}
 
+  /// Another configuration is in force, as if the service had started, but the registers go on: the pose
+  /// stays and ages, and the frames' numbers rise from the last one.
+  void begin_anew(Nanoseconds max_age);
+
   /// A frame is done. `processing`: last packet received to registers ready.
   void frame(const TrackResult& result, SteadyTime now, Nanoseconds processing);
 
@@ -49,7 +53,8 @@ class Publication {
   [[nodiscard]] Faults faults(const PublicationContext& context, SteadyTime now) const;
 
   Nanoseconds max_age_;
-  bool any_frame_ = false;
+  bool any_frame_ = false;           // of the configuration in force
+  std::uint32_t frames_before_ = 0;  // of those before it
   TrackResult newest_;
   Nanoseconds processing_{0};
   HealthyPose healthy_;

@@ -44,9 +44,10 @@ int Service::run() {
   notifier_.stopping();
   session_->end(Session::Ending::for_good);
   const std::optional<std::string> failure = failure_.get();
-  log_.write(failure ? LogLevel::error : LogLevel::notice, failure
-                                                               ? "stopped by a fault of its own: " + *failure
-                                                               : "stopped as asked; the PLC sees health 0");
+  const PlcWrite& farewell = session_->farewell();
+  log_.write(failure || !farewell.ok() ? LogLevel::error : LogLevel::notice,
+             (failure ? "stopped by a fault of its own: " + *failure : "stopped as asked") + "; " +
+                 farewell_words(farewell));
   return failure ? 1 : 0;
 }
 
@@ -56,7 +57,7 @@ void Service::start_session(const Prepared& prepared) {
       [this](const std::string& thread, const std::string& what) {
         failure_.put("thread " + thread + " failed: " + what);
       },
-      heartbeat_);
+      registers_);
 }
 
 void Service::turn(SteadyTime now) {
@@ -107,9 +108,7 @@ void Service::finish_reload() {
 }
 
 void Service::swap_to(Prepared next) {
-  heartbeat_ = session_->end(Session::Ending::for_reload);
-  const WriteBlock last = session_->registers();
-  const SteadyTime left_at = steady_now();
+  registers_ = session_->end(Session::Ending::for_reload);
   session_.reset();
   try {
     start_session(next);
@@ -117,23 +116,26 @@ void Service::swap_to(Prepared next) {
     log_.apply(prepared_.config.log);
     log_.write(LogLevel::notice, "reload: the new configuration is in force; the hull is searched for again");
   } catch (const std::exception& refusal) {
-    fall_back(refusal.what(), last, left_at);
+    fall_back(refusal.what());
   }
 }
 
-/// `last`: what the registers have held since `left_at`, maybe health 1.
-void Service::fall_back(const std::string& refusal, const WriteBlock& last, SteadyTime left_at) {
+void Service::fall_back(const std::string& refusal) {
   try {
     start_session(prepared_);
     log_.write(LogLevel::error, "reload refused: " + refusal + ". The old configuration stays in force");
   } catch (const std::exception&) {
-    log_.write(LogLevel::error, "reload failed: " + refusal + ". The old configuration cannot go on either");
-    if (const PlcWrite written = write_farewell(prepared_.config.plc, last, left_at, heartbeat_);
-        !written.ok()) {
-      log_.write(LogLevel::error, "the PLC could not be told that the service stops: " + written.message);
-    }
+    log_.write(LogLevel::error, "reload failed: " + refusal +
+                                    ". The old configuration cannot go on either; " +
+                                    farewell_words(say_farewell()));
     throw;
   }
+}
+
+/// Without a plc thread: what the last session left in the registers, maybe health 1, must not stand.
+PlcWrite Service::say_farewell() {
+  PlcClient client(prepared_.config.plc, {}, registers_.heartbeat);
+  return write_farewell(client, registers_.publication.block({.stopped = true}, steady_now()));
 }
 
 void Service::supervise(SteadyTime now) {

@@ -39,7 +39,8 @@ class Service {
   void begin_reload();
   void finish_reload();
   void swap_to(Prepared next);
-  void fall_back(const std::string& refusal, const WriteBlock& last, SteadyTime left_at);
+  void fall_back(const std::string& refusal);
+  PlcWrite say_farewell();
   void supervise(SteadyTime now);
   void report(SteadyTime now);
 
@@ -51,7 +52,7 @@ class Service {
   ProgressLog progress_log_{log_, Notifier::watchdog_timeout()};
   Mailbox<std::optional<std::string>> failure_;  // a thread's, once it has ended
   std::unique_ptr<Session> session_;
-  std::uint16_t heartbeat_ = 0;
+  RegisterMemory registers_;  // of the session before
   std::future<Preparation> reload_;
   bool reload_again_ = false;
   bool stopping_ = false;

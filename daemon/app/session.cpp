@@ -14,11 +14,11 @@ Nanoseconds plc_turn_limit(const PlcConfig& plc) { return kTurnLimit + 3 * plc.r
 }  // namespace
 
 Session::Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailure on_failure,
-                 std::uint16_t heartbeat)
+                 const RegisterMemory& before)
     : rx_(prepared.config, exchange_, watch_.add("rx", kTurnLimit, steady_now()), log),
       track_(prepared.config, prepared.map, exchange_, watch_.add("track", kTurnLimit, steady_now())),
       plc_(prepared.config, exchange_, watch_.add("plc", plc_turn_limit(prepared.config.plc), steady_now()),
-           log, heartbeat),
+           log, before),
       plc_runner_(
           "plc", [this](std::stop_token stop) { plc_.run(stop); }, on_failure,
           [this] { exchange_.plc_bell.ring(); }),
@@ -30,14 +30,14 @@ Session::Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailur
 
 Session::~Session() { end(Ending::for_good); }
 
-std::uint16_t Session::end(Ending ending) {
+RegisterMemory Session::end(Ending ending) {
   rx_runner_.stop();
   track_runner_.stop();
   if (ending == Ending::for_reload) {
     plc_.leave_without_last_write();
   }
   plc_runner_.stop();
-  return plc_.heartbeat();
+  return plc_.memory();
 }
 
 }  // namespace hulltrack

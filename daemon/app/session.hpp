@@ -23,14 +23,16 @@ class Session {
     for_reload,  // the next session goes on writing
   };
 
-  /// `heartbeat`: the last one written, for the PLC to see an unbroken count.
+  /// `before`: of the session before, whose registers this one goes on with.
   Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailure on_failure,
-          std::uint16_t heartbeat);
+          const RegisterMemory& before = {});
   /// Ends for good unless end() was called before.
   ~Session();
 
-  /// Stops the threads and gives the last heartbeat written.
-  std::uint16_t end(Ending ending);
+  /// Stops the threads and gives what the registers said last.
+  RegisterMemory end(Ending ending);
+  /// How the last write of an end for good went.
+  [[nodiscard]] const PlcWrite& farewell() const { return plc_.farewell(); }
 
   [[nodiscard]] const ThreadWatch& watch() const { return watch_; }
   [[nodiscard]] WriteBlock registers() const { return exchange_.registers.get(); }

@@ -41,7 +41,7 @@ class PlcThreadTest : public testing::Test {
   Config config = patient(room_service(1, plc.server().port()).config);
   Exchange exchange;
   Pulse pulse{"plc", std::chrono::seconds(1), steady_now()};
-  PlcThread thread{config, exchange, pulse, log, 0};
+  PlcThread thread{config, exchange, pulse, log, {}};
 };
 
 class RunningPlcThreadTest : public PlcThreadTest {

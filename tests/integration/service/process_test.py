@@ -128,6 +128,10 @@ class ServiceTest(unittest.TestCase):
         plc.wait_for(lambda record: not healthy(record), "with health 0 after the reload")
         plc.wait_for(healthy, "with health 1 after the reload")
         self.assert_unbroken_heartbeat(plc)
+        records = self.after_first_health(plc)
+        frames = [record["frame"] for record in records]
+        self.assertEqual(frames, sorted(frames))
+        self.assertLess(max(record["age_ms"] for record in records), 1e7, "the pose stays through a reload")
         times = [record["mono_ns"] for record in plc.writes()]
         gap = max(b - a for a, b in zip(times, times[1:]))
         print(f"longest gap between writes, reload included: {gap * 1e-6:.0f} ms", file=sys.stderr)

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "daemon/app/farewell.hpp"
 #include "tests/integration/service/loader_bench.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/recording_log.hpp"
@@ -34,8 +35,8 @@ class SessionTest : public testing::Test {
     }
   }
 
-  void start(std::uint16_t heartbeat = 0) {
-    session = std::make_unique<Session>(room_service(lidar_port, plc_port), log, fail, heartbeat);
+  void start(const RegisterMemory& before = {}) {
+    session = std::make_unique<Session>(room_service(lidar_port, plc_port), log, fail, before);
   }
   std::optional<WriteBlock> wait_for(const std::function<bool(const WriteBlock&)>& law) {
     return plc->wait_for(law);
@@ -98,9 +99,11 @@ TEST_F(SessionTest, TracksARoomAndLeavesHealthZeroAndStateStopped) {
 }
 
 TEST_F(SessionTest, HeartbeatGrowsByOneAtEveryWriteAlsoAcrossAReload) {
-  start(65530);
+  RegisterMemory before;
+  before.heartbeat = 65530;
+  start(before);
   ASSERT_TRUE(wait_for(healthy));
-  const std::uint16_t last = session->end(Session::Ending::for_reload);
+  const RegisterMemory last = session->end(Session::Ending::for_reload);
   session.reset();
   start(last);
   ASSERT_TRUE(wait_for(healthy));
@@ -113,6 +116,42 @@ TEST_F(SessionTest, HeartbeatGrowsByOneAtEveryWriteAlsoAcrossAReload) {
     ASSERT_EQ(blocks[i].health, blocks[i].state == State::tracking);
     ASSERT_EQ(blocks[i].state == State::stopped, i + 1 == blocks.size());
   }
+}
+
+TEST_F(SessionTest, AReloadKeepsThePoseWithHealthZeroItsAgeGrowsAndFramesGoOn) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  const RegisterMemory memory = session->end(Session::Ending::for_reload);
+  session.reset();
+  const auto old_blocks = plc->blocks();
+  const WriteBlock last = old_blocks.back();
+  start(memory);
+  const auto again = plc->wait_for(healthy, old_blocks.size());
+  ASSERT_TRUE(again);
+  session.reset();
+  const auto blocks = plc->blocks();
+  double age = last.age_ms;
+  std::size_t i = old_blocks.size();
+  for (; !blocks[i].health; ++i) {
+    ASSERT_EQ(blocks[i].frame, last.frame);
+    ASSERT_EQ(blocks[i].x_m, last.x_m);
+    ASSERT_EQ(blocks[i].yaw_deg, last.yaw_deg);
+    ASSERT_EQ(blocks[i].sigma_translation_m, last.sigma_translation_m);
+    ASSERT_GT(blocks[i].age_ms, age);
+    age = blocks[i].age_ms;
+  }
+  EXPECT_GT(i, old_blocks.size()) << "health was 0 in between";
+  EXPECT_EQ(blocks[old_blocks.size()].state, State::starting);
+  EXPECT_GT(again->frame, last.frame);
+}
+
+TEST_F(SessionTest, AFarewellThatFailsIsToldAsSuch) {
+  start();
+  ASSERT_TRUE(wait_for(healthy));
+  plc.reset();
+  session->end(Session::Ending::for_good);
+  EXPECT_FALSE(session->farewell().ok());
+  EXPECT_THAT(farewell_words(session->farewell()), testing::HasSubstr("may still say health 1"));
 }
 
 TEST_F(SessionTest, ASilentLidarTakesTheHealthAndGivesItBack) {
@@ -144,7 +183,7 @@ TEST_F(SessionTest, AForeignSenderIsNamedAndChangesNothing) {
 TEST_F(SessionTest, PacketsOfAnotherModelAreToldAlthoughNoFrameComesOfThem) {
   Prepared other = room_service(lidar_port, plc_port);
   other.config.lidars.front().model = "velodyne_vlp32c";
-  session = std::make_unique<Session>(other, log, fail, 0);
+  session = std::make_unique<Session>(other, log, fail);
   const auto told =
       wait_for([](const WriteBlock& block) { return (block.faults & fault::foreign_packets) != 0; });
   ASSERT_TRUE(told);
@@ -249,7 +288,7 @@ TEST_F(SessionTest, ObeysTheCommandWordAndEchoesIt) {
 TEST_F(SessionTest, APortInUseIsOneClearLine) {
   start();
   try {
-    Session second(room_service(lidar_port, plc_port), log, fail, 0);
+    Session second(room_service(lidar_port, plc_port), log, fail);
     FAIL() << "two services on one port";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr(std::to_string(lidar_port)));

@@ -93,6 +93,24 @@ TEST(Publication, HealthFallsWithAgeWhateverTheTrackerSaid) {
 }
 
 TEST(Publication, EventBitsStayForASecondAndConditionsAsLongAsTheyHold) {
+TEST(Publication, AnotherConfigurationKeepsThePoseAndTheFramesRise) {
+  Publication publication(milliseconds(500));
+  publication.frame(healthy_frame(kStart, 7, 0.1), kStart, {});
+  (void)publication.block({}, kStart);
+  publication.begin_anew(milliseconds(300));
+  publication.begin_anew(milliseconds(200));  // twice before its first frame
+  const WriteBlock b = publication.block({}, kStart + milliseconds(100));
+  EXPECT_FALSE(b.health);
+  EXPECT_EQ(b.state, State::starting);
+  EXPECT_EQ(b.frame, 7u);
+  EXPECT_DOUBLE_EQ(b.x_m, 0.1);
+  EXPECT_NEAR(b.sigma_translation_m, 0.01, 1e-12);
+  EXPECT_NEAR(b.age_ms, 100.0, 1e-9);
+  publication.frame(healthy_frame(kStart + milliseconds(200), 0, 0.4), kStart + milliseconds(250), {});
+  EXPECT_EQ(publication.block({}, kStart + milliseconds(250)).frame, 8u);
+  EXPECT_FALSE(publication.block({}, kStart + milliseconds(401)).health) << "the new max_age holds";
+}
+
   Publication publication(milliseconds(500));
   publication.frame(lost_frame(kStart, 1), kStart, {});
   publication.events(fault::frame_dropped, kStart);
