@@ -15,12 +15,17 @@ JointGate::JointGate(const JointGateConfig& config)
               Joint{"slew", "deg", degrees(1.0), config.slew, {}, {}, {}, {}, 0.0},
               Joint{"luff", "deg", degrees(1.0), config.luff, {}, {}, {}, {}, 0.0}} {}
 
+bool JointGate::is_news(const JointReading& reading) const {
+  const bool later = !last_ || reading.sample.time > last_->sample.time;
+  const bool moved = !last_ || !config_.has_heartbeat || reading.heartbeat != last_->heartbeat;
+  return later && moved;
+}
+
 JointGate::Outcome JointGate::offer(const JointReading& reading) {
-  const MeasurementTime time = reading.sample.time;
-  if (last_ &&
-      (time <= last_->sample.time || (config_.has_heartbeat && reading.heartbeat == last_->heartbeat))) {
+  if (!is_news(reading)) {
     return {Verdict::no_news, last_outcome_.faults, last_outcome_.reason};
   }
+  const MeasurementTime time = reading.sample.time;
   last_ = reading;
 
   const Joints& v = reading.sample.joints;

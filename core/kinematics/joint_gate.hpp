@@ -52,6 +52,10 @@ class JointGate {
 
   explicit JointGate(const JointGateConfig& config);
 
+  /// Whether `reading` is more than the last one again: its heartbeat moved (where the PLC has one), and it
+  /// is later.
+  [[nodiscard]] bool is_news(const JointReading& reading) const;
+
   /// Judges the next reading; readings come in order of time (an earlier one is no news).
   [[nodiscard]] Outcome offer(const JointReading& reading);
 

@@ -5,6 +5,7 @@
 #include "daemon/app/farewell.hpp"
 #include "daemon/app/frame_pipeline.hpp"
 #include "daemon/app/live_time.hpp"
+#include "daemon/app/plc_reading.hpp"
 
 namespace hulltrack {
 namespace {
@@ -81,17 +82,20 @@ void PlcThread::poll() {
 }
 
 void PlcThread::take_reading(const PlcPoll& answer) {
-  if (!answer.fresh) {
-    return;  // torn, or no news; while the data is stale the last command stays in force
-  }
-  if (command_.read(answer.reading.command)) {
-    gate_.reacquire();
-    ++view_.reacquire_edges;
-  }
   const PlcReading& reading = answer.reading;
+  if (reading.torn) {
+    return;
+  }
   const JointSample sample{live_measurement_time(answer.stamp() - config_.latency),
                            joints_from_plc(reading.travel_m, reading.slew_deg, reading.luff_deg)};
-  const JointGate::Outcome outcome = gate_.offer({sample, reading.heartbeat});
+  const JointGate::Outcome outcome =
+      take_plc_reading({sample, reading.heartbeat}, reading.command, command_, gate_);
+  if (outcome.verdict == JointGate::Verdict::no_news) {
+    return;
+  }
+  if (command_.take_reacquire()) {
+    ++view_.reacquire_edges;
+  }
   watch_.judged(outcome, answer.answered);
   publish_view(answer.answered);  // before the sample: a frame must not be judged by an older view
   if (outcome.verdict == JointGate::Verdict::believed) {

@@ -4,6 +4,7 @@
 
 #include "core/base/text.hpp"
 #include "daemon/app/frame_pipeline.hpp"
+#include "daemon/app/plc_reading.hpp"
 
 namespace hulltrack {
 
@@ -167,12 +168,10 @@ void RecordingPlayer::play_plc_until(MeasurementTime last_firing) {
 
 void RecordingPlayer::play_row(const PlcCsvRow& row) {
   const MeasurementTime presented = measurement_time_from_ns(row.t_ns);
-  if (latch_.read(row.command)) {
-    gate_.reacquire();
-  }
   const JointSample sample{presented - plc_.latency,
                            joints_from_plc(row.d_x, row.theta_r_deg, row.theta_p_deg)};
-  const JointGate::Outcome outcome = gate_.offer({sample, static_cast<std::uint16_t>(row.heartbeat)});
+  const JointGate::Outcome outcome =
+      take_plc_reading({sample, static_cast<std::uint16_t>(row.heartbeat)}, row.command, latch_, gate_);
   value_fault_ = outcome.faults;
   if (outcome.verdict != JointGate::Verdict::no_news) {
     last_news_ = presented;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/app/command_word.hpp"
+#include "daemon/app/plc_reading.hpp"
 
 namespace hulltrack {
 namespace {
@@ -92,7 +93,6 @@ TEST(Publication, HealthFallsWithAgeWhateverTheTrackerSaid) {
   EXPECT_EQ(b.state, State::degraded);
 }
 
-TEST(Publication, EventBitsStayForASecondAndConditionsAsLongAsTheyHold) {
 TEST(Publication, AnotherConfigurationKeepsThePoseAndTheFramesRise) {
   Publication publication(milliseconds(500));
   publication.frame(healthy_frame(kStart, 7, 0.1), kStart, {});
@@ -111,6 +111,7 @@ TEST(Publication, AnotherConfigurationKeepsThePoseAndTheFramesRise) {
   EXPECT_FALSE(publication.block({}, kStart + milliseconds(401)).health) << "the new max_age holds";
 }
 
+TEST(Publication, EventBitsStayForASecondAndConditionsAsLongAsTheyHold) {
   Publication publication(milliseconds(500));
   publication.frame(lost_frame(kStart, 1), kStart, {});
   publication.events(fault::frame_dropped, kStart);
@@ -163,6 +164,24 @@ TEST(CommandLatch, KeepsAnEdgeUntilItIsTaken) {
   EXPECT_FALSE(latch.take_reacquire());
   EXPECT_TRUE(latch.read(kCommandReacquire | kCommandHold));
   EXPECT_TRUE(latch.hold());
+}
+
+TEST(PlcReading, AFrozenHeartbeatBringsNeitherCommandNorJoints) {
+  const JointLimits limits{-100.0, 100.0, 1.0};
+  JointGate gate({.travel = limits, .slew = limits, .luff = limits});
+  CommandLatch latch;
+  const auto offer = [&](int ms, double travel, std::uint16_t heartbeat, std::uint16_t command) {
+    const MeasurementTime time{milliseconds(1'000'000 + ms)};
+    return take_plc_reading({{time, {travel, 0.0, 0.0}}, heartbeat}, command, latch, gate).verdict;
+  };
+  EXPECT_EQ(offer(0, 1.0, 5, 0), JointGate::Verdict::believed);
+  EXPECT_EQ(offer(20, 1.0, 5, kCommandHold | kCommandReacquire), JointGate::Verdict::no_news);
+  EXPECT_EQ(latch.command(), 0);
+  EXPECT_FALSE(latch.take_reacquire());
+  EXPECT_EQ(offer(40, 50.0, 6, kCommandReacquire), JointGate::Verdict::believed) << "the edge comes first";
+  EXPECT_TRUE(latch.take_reacquire());
+  EXPECT_EQ(offer(60, 1.0, 7, kCommandHold), JointGate::Verdict::refused);
+  EXPECT_TRUE(latch.hold()) << "news with a joint that is refused is news all the same";
 }
 
 }  // namespace
