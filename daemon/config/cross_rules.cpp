@@ -117,12 +117,20 @@ void check_plc(const PlcConfig& plc, Broken& broken) {
   }
 }
 
-/// Two sockets that one and the same datagram could reach.
-bool collide(const LidarConfig& a, const LidarConfig& b) {
-  constexpr const char* kAll = "0.0.0.0";
-  const bool same_address = a.bind == b.bind || a.bind == kAll || b.bind == kAll;
+/// LiDARs of one bind and port share a socket: whose datagram is it?
+bool share_datagrams(const LidarConfig& a, const LidarConfig& b) {
   const bool same_source = a.source == b.source || a.source.empty() || b.source.empty();
-  return a.port == b.port && same_address && same_source;
+  return a.port == b.port && a.bind == b.bind && same_source;
+}
+
+/// A group does not arrive at a bound address, so that its socket has to be open for every address.
+bool listens_everywhere(const LidarConfig& lidar) {
+  return lidar.bind == "0.0.0.0" || !lidar.multicast.empty();
+}
+
+/// Two sockets of which the second cannot be opened.
+bool exclude_each_other(const LidarConfig& a, const LidarConfig& b) {
+  return a.port == b.port && a.bind != b.bind && (listens_everywhere(a) || listens_everywhere(b));
 }
 
 void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
@@ -141,11 +149,18 @@ void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
             {{section + ".name", other + ".name"},
              "is \"" + lidar.name + "\", the name of another LiDAR too; give each a name of its own"});
       }
-      if (collide(lidar, lidars[j])) {
-        broken.push_back({{section + ".port", section, section + ".source", section + ".bind",
-                           other + ".port", other + ".source", other + ".bind"},
-                          "is " + std::to_string(lidar.port) + ", where LiDAR \"" + lidars[j].name +
-                              "\" listens too; give each a port of its own, or a `source` to each of them"});
+      const std::vector<std::string> keys{
+          section + ".port", section,         section + ".source",    section + ".bind",   other + ".port",
+          other + ".source", other + ".bind", section + ".multicast", other + ".multicast"};
+      const std::string taken =
+          "is " + std::to_string(lidar.port) + ", where LiDAR \"" + lidars[j].name + "\" listens too";
+      if (share_datagrams(lidar, lidars[j])) {
+        broken.push_back({keys, taken + "; give each a port of its own, or a `source` to each of them"});
+      }
+      if (exclude_each_other(lidar, lidars[j])) {
+        broken.push_back({keys, taken + ", and one of them needs it on every address (`bind` 0.0.0.0 or "
+                                        "`multicast`); give each a port of its own, or the same `bind` and a "
+                                        "`source` to each of them"});
       }
     }
   }
