@@ -46,12 +46,15 @@ int check(const Prepared& prepared, const std::string& file) {
 
 int serve(const Options& options, Prepared prepared) {
   Signals signals;  // before the log's threads, which inherit the mask
-  SyslogSink log(prepared.config.log, options.to_stderr || isatty(STDERR_FILENO) == 1);
+  const bool log_to_stderr = options.to_stderr || isatty(STDERR_FILENO) == 1;
+  SyslogSink log(prepared.config.log, log_to_stderr);
   try {
     return Service(options.config, std::move(prepared), signals, log).run();
   } catch (const std::exception& error) {
     log.write(LogLevel::error, error.what());
-    std::fprintf(stderr, "hulltrackd: %s\n", error.what());
+    if (!log_to_stderr) {
+      std::fprintf(stderr, "hulltrackd: %s\n", error.what());
+    }
     return kExitFailed;
   }
 }

@@ -196,10 +196,14 @@ class ServiceTest(unittest.TestCase):
             taken.bind(("127.0.0.1", 0))
             self.lidar_port = taken.getsockname()[1]
             self.write_config(free_port(socket.SOCK_STREAM))
-            done = self.run_to_end()
-        self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn(str(self.lidar_port), done.stderr)
-        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            for arguments in ((), ("--stderr",)):
+                with self.subTest(arguments):
+                    done = self.run_to_end(*arguments)
+                    self.assertEqual(done.returncode, 1, done.stderr)
+                    self.assertIn(str(self.lidar_port), done.stderr)
+                    told = [text for text in done.stderr.splitlines() if "in use" in text]
+                    self.assertEqual(len(told), 1, done.stderr)
+                    self.assertTrue(arguments or len(done.stderr.splitlines()) == 1, done.stderr)
 
     def test_errors_of_configuration_and_map_exit_78_with_file_and_line(self):
         self.write_config(502, "\n[tracking]\nvoxel_sise = 0.5\n")
