@@ -12,40 +12,50 @@
 namespace hulltrack {
 namespace {
 
+/// What is wrong with the calibration file of LiDAR `lidar`, or with there being none; empty if nothing is.
+std::string calibration_problem(const LidarConfig& lidar) {
+  const LidarModel* model = find_lidar_model(lidar.model);
+  if (model == nullptr) {
+    return {};  // told already, and nobody knows what it would need
+  }
+  if (!model->needs_calibration && !lidar.calibration.empty()) {
+    return lidar.model + " takes no calibration file; remove the key";
+  }
+  const auto decoder = model->make_decoder({}, lidar.calibration);
+  return decoder ? "" : decoder.error().message;
+}
+
+/// Goes on where the configuration has problems, so that a person hears of all of them at once.
 Preparation prepare_or_throw(const std::filesystem::path& config_file) {
   ConfigReading reading = read_config(config_file, lidar_model_names());
-  if (!reading.config) {
-    return {std::nullopt, std::move(reading.problems)};
-  }
-  Preparation preparation;
-  const Config& config = *reading.config;
+  Preparation preparation{std::nullopt, std::move(reading.problems)};
+  const Config& config = reading.readable;
   const auto complain = [&](const std::string& key, const std::string& message) {
     preparation.problems.push_back(reading.problem_with(config_file, key, message));
   };
   for (std::size_t i = 0; i < config.lidars.size(); ++i) {
-    const LidarConfig& lidar = config.lidars[i];
-    const LidarModel& model = *find_lidar_model(lidar.model);
     const std::string key = "lidar." + std::to_string(i) + ".calibration";
-    if (!model.needs_calibration && !lidar.calibration.empty()) {
-      complain(key, lidar.model + " takes no calibration file; remove the key");
-    } else if (const auto decoder = model.make_decoder({}, lidar.calibration); !decoder) {
-      complain(key, decoder.error().message);
+    const std::string problem = calibration_problem(config.lidars[i]);
+    if (!problem.empty() && !reading.bad_keys.contains(key)) {
+      complain(key, problem);
     }
   }
-  Result<MapFile> map = read_map_file(config.map_file);
-  if (!map) {
-    complain("hull.map", map.error().message);
-  } else if (const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
-             map->cloud.size() < least) {
-    complain("hull.map", config.map_file.string() + ": has " + counted(map->cloud.size(), "point") +
-                             ", fewer than health.min_matched = " + std::to_string(least) +
-                             "; no scan could ever match it: make a denser map");
+  if (!config.map_file.empty()) {
+    Result<MapFile> map = read_map_file(config.map_file);
+    if (!map) {
+      complain("hull.map", map.error().message);
+    } else if (const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
+               map->cloud.size() < least) {
+      complain("hull.map", config.map_file.string() + ": has " + counted(map->cloud.size(), "point") +
+                               ", fewer than health.min_matched = " + std::to_string(least) +
+                               "; no scan could ever match it: make a denser map");
+    } else if (reading.config && preparation.problems.empty()) {
+      const std::size_t dropped = map->dropped;
+      preparation.prepared = Prepared{*std::move(reading.config),
+                                      std::make_shared<const HullMap>(std::move(map->cloud)), dropped};
+    }
   }
-  if (preparation.problems.empty()) {
-    const std::size_t dropped = map->dropped;
-    preparation.prepared =
-        Prepared{*std::move(reading.config), std::make_shared<const HullMap>(std::move(map->cloud)), dropped};
-  }
+  sort_by_line(preparation.problems);
   return preparation;
 }
 

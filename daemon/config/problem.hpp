@@ -3,7 +3,9 @@
 // Readers collect every Problem they can find, so that a person repairs a file in one go.
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 namespace hulltrack {
 
@@ -18,6 +20,12 @@ struct Problem {
   const std::string place =
       problem.line > 0 ? problem.file + ':' + std::to_string(problem.line) : problem.file;
   return place + ": " + problem.message;
+}
+
+/// The order in which a person mends them.
+inline void sort_by_line(std::vector<Problem>& problems) {
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Problem& a, const Problem& b) { return a.line < b.line; });
 }
 
 }  // namespace hulltrack

@@ -75,12 +75,20 @@ std::optional<Problem> find_long_line(std::string_view text, const std::string& 
 void resolve_paths(Config& config, const std::filesystem::path& file) {
   std::error_code ignored;
   const auto folder = std::filesystem::absolute(file, ignored).parent_path();
-  config.map_file = (folder / config.map_file).lexically_normal();
+  if (!config.map_file.empty()) {
+    config.map_file = (folder / config.map_file).lexically_normal();
+  }
   for (LidarConfig& lidar : config.lidars) {
     if (!lidar.calibration.empty()) {
       lidar.calibration = (folder / lidar.calibration).lexically_normal().string();
     }
   }
+}
+
+ConfigReading without_config(Problem problem) {
+  ConfigReading reading;
+  reading.problems.push_back(std::move(problem));
+  return reading;
 }
 
 }  // namespace
@@ -94,29 +102,31 @@ ConfigReading parse_config(std::string_view text, const std::filesystem::path& f
                            const std::vector<std::string>& models) {
   const std::string name = file.string();
   if (text.size() > kMaxFile) {
-    return {std::nullopt, {{name, 0, "is larger than 1 MiB; is this the configuration?"}}, {}};
+    return without_config({name, 0, "is larger than 1 MiB; is this the configuration?"});
   }
   if (const auto long_line = find_long_line(text, name)) {
-    return {std::nullopt, {*long_line}, {}};
+    return without_config(*long_line);
   }
   Document document = read_document(text, name, models);
-  if (document.lines.empty()) {  // not even TOML
-    return {std::nullopt, std::move(document.problems), std::move(document.lines)};
+  if (!document.lines.empty()) {  // otherwise it is not even TOML
+    add_broken_rules(document, name);
   }
-  add_broken_rules(document, name);
-  if (!document.problems.empty()) {
-    std::stable_sort(document.problems.begin(), document.problems.end(),
-                     [](const Problem& a, const Problem& b) { return a.line < b.line; });
-    return {std::nullopt, std::move(document.problems), std::move(document.lines)};
-  }
+  sort_by_line(document.problems);
   resolve_paths(document.config, file);
-  return {std::move(document.config), {}, std::move(document.lines)};
+  ConfigReading reading{.config = {},
+                        .problems = std::move(document.problems),
+                        .lines = std::move(document.lines),
+                        .readable = std::move(document.config),
+                        .bad_keys = std::move(document.bad_keys)};
+  if (reading.problems.empty()) {
+    reading.config = reading.readable;
+  }
+  return reading;
 }
 
 ConfigReading read_config(const std::filesystem::path& file, const std::vector<std::string>& models) {
   const auto failed = [&](const std::string& why) {
-    return ConfigReading{
-        std::nullopt, {{file.string(), 0, "cannot be read: " + why + "; is this the right file?"}}, {}};
+    return without_config({file.string(), 0, "cannot be read: " + why + "; is this the right file?"});
   };
   std::error_code code;
   if (std::filesystem::is_directory(file, code)) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ struct ConfigReading {
   std::optional<Config> config;      // present if and only if problems is empty
   std::vector<Problem> problems;     // in order of their lines
   std::map<std::string, int> lines;  // of every key and section that the file has: "hull.map", "lidar.0"
+  Config readable;                   // what could be read, so that files it names can be checked all the same
+  std::set<std::string> bad_keys;    // whose values are not legal: in `readable` they have their defaults
 
   /// A problem that shows only later, such as a map that cannot be read: said of `key` ("hull.map",
   /// "lidar.0.calibration"), at its line or else that of its section.

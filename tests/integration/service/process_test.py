@@ -223,6 +223,16 @@ class ServiceTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 78)
                 self.assertIn("room.pcd", done.stderr)
 
+    def test_a_check_names_the_problems_of_keys_and_of_the_map_together(self):
+        self.write_config(502, "\n[tracking]\nvoxel_sise = 0.5\n")
+        (self.folder / "room.pcd").unlink()
+        done = self.run_to_end("--check-config")
+        self.assertEqual(done.returncode, 78)
+        lines = done.stderr.splitlines()
+        self.assertEqual(len(lines), 2, done.stderr)
+        self.assertIn("room.pcd", lines[0])
+        self.assertIn("voxel_sise", lines[1])
+
     def test_a_standard_error_that_nobody_reads_holds_nothing_up(self):
         plc = self.start(Plc())
         self.start(Process([ROOM_LIDAR, self.lidar_port]))
