@@ -63,8 +63,16 @@ Result<void> CsvLines::expect_header(std::string_view header) {
 
 Result<bool> CsvLines::next(std::size_t field_count) {
   auto more = read_line();
+  const int first = line_;
+  while (more && *more && text_.empty()) {
+    more = read_line();
+  }
   if (!more || !*more) {
     return more;
+  }
+  if (line_ > first) {
+    line_ = first;
+    return error("is blank, with more lines after it; was something lost here?");
   }
   fields_.clear();
   std::string_view rest = text_;

@@ -21,7 +21,7 @@ class CsvLines {
   explicit CsvLines(const std::filesystem::path& file);
   /// Reads the first line and compares it with `header`.
   [[nodiscard]] Result<void> expect_header(std::string_view header);
-  /// Reads the next line into fields(); false at the end of the file.
+  /// Reads the next line into fields(); false at the end of the file, which blank lines may precede.
   [[nodiscard]] Result<bool> next(std::size_t field_count);
   [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }
   [[nodiscard]] int line() const { return line_; }

@@ -68,6 +68,15 @@ TEST(PlcCsv, AcceptsCarriageReturnsEqualTimesAndAMissingLastNewline) {
   EXPECT_EQ(rows->back().command, 1);
 }
 
+TEST(PlcCsv, BlankLinesMayEndTheFile) {
+  const TempFolder folder;
+  for (const char* end : {"\n\n", "\n\n\n\n", "\r\n\r\n", "\n\r"}) {
+    const auto rows = read_plc_csv(folder.file("plc.csv", std::string(kHeader) + "1,2,3,4,5,0" + end));
+    ASSERT_TRUE(rows) << rows.error().message;
+    EXPECT_EQ(rows->size(), 1U);
+  }
+}
+
 struct Broken {
   const char* name;
   std::string content;
@@ -96,7 +105,8 @@ INSTANTIATE_TEST_SUITE_P(
                ":3: ", "has 5 fields, must have 6"},
         Broken{"cut_short", std::string(kHeader) + "1,2,3,4,5,0\n2,2,3", ":3: ", "cut short"},
         Broken{"too_many_fields", std::string(kHeader) + "1,2,3,4,5,0,9\n", ":2: ", "has 7 fields"},
-        Broken{"blank_line", std::string(kHeader) + "1,2,3,4,5,0\n\n2,2,3,4,5,0\n", ":3: ", "has 1 field,"},
+        Broken{"blank_line", std::string(kHeader) + "1,2,3,4,5,0\n\n2,2,3,4,5,0\n",
+               ":3: ", "is blank, with more"},
         Broken{"not_a_number", std::string(kHeader) + "1,2,three,4,5,0\n",
                ":2: ", "theta_r is `three`, must be a finite number"},
         Broken{"nan", std::string(kHeader) + "1,nan,3,4,5,0\n", ":2: ", "d_x is `nan`"},
