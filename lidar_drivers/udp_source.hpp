@@ -23,7 +23,6 @@ struct UdpCounters {
   std::uint64_t received = 0;          // datagrams handed out
   std::uint64_t foreign = 0;           // from an address that is no LiDAR's: dropped
   std::uint64_t kernel_overflows = 0;  // lost because the receive buffer was full (SO_RXQ_OVFL)
-  std::uint64_t truncated = 0;         // longer than a datagram can be read: dropped
   std::uint64_t unstamped = 0;         // no kernel stamp: the time of reading was used
 };
 

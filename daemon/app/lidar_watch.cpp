@@ -27,6 +27,8 @@ LidarWatch::LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& 
       overflow_log_(log),
       loss_log_(log),
       rate_log_(log),
+      mode_log_(log, LogLevel::notice),
+      sector_log_(log, LogLevel::info),
       clock_log_(log) {}
 
 Faults LidarWatch::update(const LidarEvidence& evidence, SteadyTime now) {
@@ -113,6 +115,21 @@ void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
                            status.rpm, expected_rpm_);
       },
       "no wrong rotation rate any more");
+  tell(
+      mode_log_, mode_changes_.update(status.return_mode_changes, now), now,
+      [&] {
+        return format_text(
+            "its return mode was changed to %s, %s so far. If nobody meant that, set it in its web page",
+            return_mode_name(status.return_mode), counted(status.return_mode_changes, "time").c_str());
+      },
+      "its return mode stays as it is");
+  tell(
+      sector_log_, status.field_of_view_cut, now,
+      [] {
+        return std::string(
+            "it leaves sectors out. If that is not meant, set its field of view to 360 deg in its web page");
+      },
+      "it leaves no sector out");
   tell(
       clock_log_, status.clock_fault, now,
       [&] {

@@ -85,6 +85,20 @@ TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
   EXPECT_THAT(log.lines[2].text, HasSubstr("off by 37.000 s"));
 }
 
+TEST_F(LidarWatchTest, TellsOfAChangedReturnModeAndOfSectorsLeftOutOnce) {
+  packet(seconds(1));
+  evidence.status.return_mode = ReturnMode::dual;
+  evidence.status.return_mode_changes = 1;
+  evidence.status.field_of_view_cut = true;
+  EXPECT_EQ(look(seconds(1)), 0);
+  ASSERT_EQ(log.lines.size(), 2U);
+  EXPECT_THAT(log.lines[0].text, HasSubstr("LiDAR boom: its return mode was changed to dual, 1 time so far"));
+  EXPECT_THAT(log.lines[1].text, HasSubstr("LiDAR boom: it leaves sectors out"));
+  packet(milliseconds(1200));
+  EXPECT_EQ(look(milliseconds(1200)), 0);
+  EXPECT_EQ(log.lines.size(), 2U);
+}
+
 class PlcWatchTest : public testing::Test {
  protected:
   void poll(LinkOutcome outcome, Nanoseconds t, bool fresh = true, const char* message = "") {
