@@ -80,8 +80,11 @@ Result<void> run_live(const SimulatedBerth& berth, const LiveOptions& options, c
   try {
     if (options.with_plc) plc = std::make_unique<LivePlc>(berth, options);
   } catch (const std::runtime_error& failure) {
-    return Error{std::string(failure.what()) + "; choose another port with --plc-port"};
+    return Error{
+        std::string(failure.what()) +
+        "; --plc-port names another port, --plc-bind an address of this host (`ip address` lists them)"};
   }
+  if (auto told = hooks.listening(plc ? plc->port() : options.plc_port); !told) return told;
   PacketsAhead packets(berth);
   packets.wait_ready(PacketsAhead::kReady);
   if (plc) hooks.show("the PLC listens on port " + std::to_string(plc->port()));

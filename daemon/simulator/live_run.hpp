@@ -24,6 +24,8 @@ struct LiveOptions {
 };
 
 struct LiveHooks {
+  /// Called once, before anything is simulated; an error ends the run. `plc_port`: the bound one.
+  std::function<Result<void>(std::uint16_t plc_port)> listening;
   std::function<void(const std::string& line)> show;
   std::function<bool()> keep_going;
 };

@@ -119,27 +119,31 @@ Joints parse_joints(const std::string& text) {
   return {d_x, radians(slew), radians(luff)};
 }
 
-void write_config(const SimulatedBerth& berth, const SimulateOptions& options) {
+Result<void> write_config(const SimulatedBerth& berth, const SimulateOptions& options,
+                          std::uint16_t plc_port) {
+  if (options.config_out.empty()) return {};
   const SiteAddresses addresses{
-      .plc_host = "127.0.0.1", .plc_port = options.live.plc_port, .lidar_port = options.live.lidar_port};
+      .plc_host = "127.0.0.1", .plc_port = plc_port, .lidar_port = options.live.lidar_port};
   std::fprintf(stderr, "surveying the ship for %s/hull.pcd\n", options.config_out.c_str());
   if (auto done =
           write_site_files(berth, options.config_out, options.overwrite, site_config(berth, addresses));
       !done)
-    throw ToolError(done.error().message);
+    return done;
   std::fprintf(stderr, "start the service: hulltrackd --stderr --config %s/hulltrackd.toml\n",
                options.config_out.c_str());
+  return {};
 }
 
 void run_on_network(const SimulatedBerth& berth, const SimulateOptions& options) {
   watch_for_interrupts();
-  if (!options.config_out.empty()) write_config(berth, options);
-  const LiveHooks hooks{.show =
-                            [](const std::string& line) {
-                              std::puts(line.c_str());
-                              std::fflush(stdout);
-                            },
-                        .keep_going = [] { return g_interrupted == 0; }};
+  const LiveHooks hooks{
+      .listening = [&](std::uint16_t plc_port) { return write_config(berth, options, plc_port); },
+      .show =
+          [](const std::string& line) {
+            std::puts(line.c_str());
+            std::fflush(stdout);
+          },
+      .keep_going = [] { return g_interrupted == 0; }};
   if (auto done = run_live(berth, options.live, hooks); !done) throw ToolError(done.error().message);
 }
 
@@ -192,7 +196,11 @@ void add_simulate(CLI::App& app) {
       ->add_option("--leave-at", simulation.leave_at,
                    "Seconds after which the ship gets under way (berth, shift; default: the scenario's own)")
       ->check(CLI::Range(0.0, 3600.0));
-  command->add_option("--seed", simulation.seed, "The same seed gives the same bytes")->capture_default_str();
+  command->add_option("--seed", simulation.seed, "The same seed gives the same bytes")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? text + " is negative; give a whole number from 0 on" : std::string();
+      })
+      ->capture_default_str();
   command->add_option("--joints", options->joints, "D_X,SLEW,LUFF in m and deg: the loader is parked there");
   command->add_flag("--force", options->overwrite, "Replace what is in the folder of --out or --config-out");
 
