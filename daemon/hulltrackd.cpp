@@ -41,6 +41,9 @@ int check(const Prepared& prepared, const std::string& file) {
   std::printf("%s: good: %s, map %s with %s\n", file.c_str(),
               counted(prepared.config.lidars.size(), "LiDAR").c_str(), prepared.config.map_file.c_str(),
               counted(prepared.map->cloud_H().size(), "point").c_str());
+  if (!prepared.map_remark.empty()) {
+    std::printf("%s\n", prepared.map_remark.c_str());
+  }
   return 0;
 }
 

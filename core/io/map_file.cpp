@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/io/pcd_reader.hpp"
 #include "core/io/ply_reader.hpp"
 
@@ -85,12 +86,15 @@ Result<MapFile> read_map_file(const std::filesystem::path& file) {
   return map ? std::move(map) : Result<MapFile>(in_file(map.error()));
 }
 
-Result<Cloud> read_hull_map(const std::filesystem::path& file) {
-  auto map = read_map_file(file);
-  if (!map) {
-    return map.error();
+std::string remark_on_dropped(const std::filesystem::path& file, const MapFile& map) {
+  if (map.dropped == 0) {
+    return {};
   }
-  return std::move(map->cloud);
+  return file.string() + ": " + std::to_string(map.dropped) + " of its " +
+         counted(map.dropped + map.cloud.size(), "point") +
+         " are no numbers or farther than 10 km from the origin and were left out; look whether a part of "
+         "the "
+         "hull is missing in it, and make the map again if so";
 }
 
 }  // namespace hulltrack

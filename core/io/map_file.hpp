@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include "core/base/result.hpp"
 #include "core/geometry/cloud.hpp"
@@ -27,7 +28,8 @@ struct MapFile {
 /// outnumber the good ones is refused.
 [[nodiscard]] Result<MapFile> read_map_file(const std::filesystem::path& file);
 
-/// Only the cloud of read_map_file.
-[[nodiscard]] Result<Cloud> read_hull_map(const std::filesystem::path& file);
+/// One line for whoever starts to work with `map`: how many points were left out and what to do. Empty when
+/// none was.
+[[nodiscard]] std::string remark_on_dropped(const std::filesystem::path& file, const MapFile& map);
 
 }  // namespace hulltrack

@@ -18,10 +18,7 @@ std::string calibration_problem(const LidarConfig& lidar) {
   if (model == nullptr) {
     return {};  // told already, and nobody knows what it would need
   }
-  if (!model->needs_calibration && !lidar.calibration.empty()) {
-    return lidar.model + " takes no calibration file; remove the key";
-  }
-  const auto decoder = model->make_decoder({}, lidar.calibration);
+  const auto decoder = make_lidar_decoder(*model, {}, lidar.calibration);
   return decoder ? "" : decoder.error().message;
 }
 
@@ -50,9 +47,10 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
                                ", fewer than health.min_matched = " + std::to_string(least) +
                                "; no scan could ever match it: make a denser map");
     } else if (reading.config && preparation.problems.empty()) {
-      const std::size_t dropped = map->dropped;
-      preparation.prepared = Prepared{*std::move(reading.config),
-                                      std::make_shared<const HullMap>(std::move(map->cloud)), dropped};
+      std::string remark = remark_on_dropped(config.map_file, *map);
+      preparation.prepared =
+          Prepared{*std::move(reading.config), std::make_shared<const HullMap>(std::move(map->cloud)),
+                   std::move(remark)};
     }
   }
   sort_by_line(preparation.problems);

@@ -21,7 +21,7 @@ namespace hulltrack {
 struct Prepared {
   Config config;
   std::shared_ptr<const HullMap> map;
-  std::size_t map_points_dropped = 0;  // not finite or too far away
+  std::string map_remark;  // what to know of a map that can be used all the same; empty = nothing
 };
 
 struct Preparation {

@@ -52,6 +52,9 @@ int Service::run() {
 }
 
 void Service::start_session(const Prepared& prepared) {
+  if (!prepared.map_remark.empty()) {
+    log_.write(LogLevel::warning, prepared.map_remark);
+  }
   session_ = std::make_unique<Session>(
       prepared, log_,
       [this](const std::string& thread, const std::string& what) {

@@ -107,13 +107,20 @@ std::vector<TruthRow> load_truth(const std::filesystem::path& folder) {
   return std::filesystem::exists(file) ? value_or_throw(read_truth_csv(file)) : std::vector<TruthRow>{};
 }
 
+std::shared_ptr<const HullMap> load_map(const std::filesystem::path& file) {
+  MapFile map = value_or_throw(read_map_file(file));
+  if (const std::string remark = remark_on_dropped(file, map); !remark.empty()) {
+    std::fprintf(stderr, "%s\n", remark.c_str());
+  }
+  return std::make_shared<const HullMap>(std::move(map.cloud));
+}
+
 void replay(const ReplayOptions& options) {
   must(check_recording_folder(options.folder));
   const Config config = load_config(options);
   std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
   ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
-  FramePipeline pipeline(config,
-                         std::make_shared<const HullMap>(value_or_throw(read_hull_map(config.map_file))));
+  FramePipeline pipeline(config, load_map(config.map_file));
   std::optional<FrameCsv> csv;
   if (!options.csv.empty()) {
     csv = value_or_throw(FrameCsv::create(options.csv));
@@ -167,7 +174,8 @@ void add_replay(CLI::App& app) {
   command
       ->add_option(
           "--metrics", options->metrics,
-          "map points of the distances: visible (fixed subset), full (all visible), paper (whole map)")
+          "map points of the distances: visible (fixed subset, as in service), full (all visible), paper "
+          "(whole map); Q1 decides on health, so full and paper can change states and health too")
       ->option_text("{visible,full,paper}")
       ->capture_default_str();
   command->add_flag("--no-timing", options->no_timing,

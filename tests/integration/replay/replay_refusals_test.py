@@ -4,7 +4,9 @@ A short simulated recording is spoilt in one way at a time. Every line must name
 and say what to do; what comes before a cut is replayed. A map that is none is an error of the configuration
 for the service: exit 78."""
 import pathlib
+import re
 import shutil
+import socket
 import struct
 import subprocess
 import sys
@@ -143,11 +145,28 @@ def check_cut(tool, folder):
     assert len(before) >= 2 and before == whole.read_text().splitlines()[:len(before)], before
 
 
+def check_unfinished_turn(tool, folder):
+    """With revolution framing the last row is a whole turn, not what the capture holds of the next."""
+    config = folder / "hulltrackd.toml"
+    config.write_text(config.read_text() + "\n[tracking]\nframing = \"revolution\"\n")
+    capture = folder / "lidar.pcap"
+    data = capture.read_bytes()
+    records = [head + frame for head, frame in pcap_records(data)]
+    table = folder / "turns.csv"
+    capture.write_bytes(data[:24] + b"".join(records[:190]))  # 75 to 76 datagrams a turn
+    assert replay(tool, folder, "--no-timing", "--quiet", "--csv", str(table)).returncode == 0
+    assert len(table.read_text().splitlines()) == 1 + 2, table.read_text()
+    capture.write_bytes(data[:24] + b"".join(records[:40]))
+    run = replay(tool, folder, "--no-timing", "--quiet")
+    assert run.returncode == 1 and "less than one turn" in run.stderr, run.stderr
+
+
 def check_command_lines(tool, recording):
     """Exit 2 for a wrong command line, 1 for a folder or disk that does not take the result; one plain line."""
     cases = [(2, ["simulat"], ["no subcommand \"simulat\"", "simulate"]),
              (2, ["replay", recording, "--metrics", "fll"], ["--metrics fll", "visible, full or paper"]),
              (1, ["simulate", "--frames", "1", "--out", recording], ["is not empty", "--force"]),
+             (1, ["simulate", "--frames", "1", "--plc-bind", "192.0.2.1"], ["192.0.2.1", "an address of this host"]),
              (1, ["replay", recording, "--quiet", "--csv", "/dev/full"], ["/dev/full: ", "No space left"]),
              (1, ["replay", recording, "--quiet", "--csv", recording / "no" / "folder.csv"], ["--csv"])]
     for code, command, words in cases:
@@ -156,6 +175,38 @@ def check_command_lines(tool, recording):
         for word in words:
             assert word in run.stderr, (word, run.stderr)
         print(run.stderr, end="")
+
+
+def check_seed(tool, folder):
+    run = subprocess.run([tool, "simulate", "--frames", "1", "--seed", "-1", "--out", str(folder)],
+                         capture_output=True, text=True, timeout=120)
+    assert run.returncode == 2 and "--seed: -1 is negative" in run.stderr and not folder.exists(), run
+
+
+def check_port_of_the_simulated_plc(tool, site):
+    """--plc-port 0 takes any free port; the configuration names the one that it took."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        run = subprocess.run([tool, "simulate", "--frames", "1", "--plc-port", "0", "--config-out", str(site),
+                              "--lidar-to", f"127.0.0.1:{nobody.getsockname()[1]}"],
+                             capture_output=True, text=True, timeout=240)
+    assert run.returncode == 0, run.stderr
+    port = re.search(r"the PLC listens on port (\d+)", run.stdout).group(1)
+    written = re.findall(r"^port = (\d+)$", (site / "hulltrackd.toml").read_text(), re.MULTILINE)
+    assert port in written and "0" not in written, (port, written)
+
+
+def check_map_with_gaps(tool, daemon, folder):
+    """A point that is no number is left out, and whoever uses the map is told."""
+    table = folder / "hull.pcd"
+    header, points = table.read_bytes().split(b"DATA binary\n", 1)
+    table.write_bytes(header + b"DATA binary\n" + struct.pack("<f", float("nan")) + points[4:])
+    words = f"{table}: 1 of its {len(points) // 12} points are no numbers"
+    run = replay(tool, folder, "--quiet")
+    assert run.returncode == 0 and words in run.stderr and run.stderr.count("\n") == 1, run.stderr
+    run = subprocess.run([daemon, "--config", str(folder / "hulltrackd.toml"), "--check-config"],
+                         capture_output=True, text=True, timeout=120)
+    assert run.returncode == 0 and words in run.stdout and "make the map again" in run.stdout, run
 
 
 def check_map_of_the_service(daemon, folder):
@@ -187,7 +238,11 @@ def main():
         for what, spoil, begins, words in REFUSALS:
             check_refusal(tool, spoilt(spoil), what, begins, words)
         check_cut(tool, spoilt(lambda folder: None))
+        check_unfinished_turn(tool, spoilt(lambda folder: None))
         check_command_lines(tool, spoilt(lambda folder: None))
+        check_seed(tool, parent / "seed")
+        check_port_of_the_simulated_plc(tool, parent / "site")
+        check_map_with_gaps(tool, daemon, spoilt(lambda folder: None))
         check_map_of_the_service(daemon, spoilt(lambda folder: None))
 
 

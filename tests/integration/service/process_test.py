@@ -3,6 +3,7 @@ import os
 import pathlib
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -258,6 +259,22 @@ class ServiceTest(unittest.TestCase):
         line = text.splitlines().index('calibration = "gone.csv"') + 1
         self.assertIn(f"{self.config}:{line}: lidar.calibration: velodyne_vlp16 takes no calibration", done.stderr)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_tells_at_start_and_reload_of_map_points_that_are_no_numbers(self):
+        room = self.folder / "room.pcd"
+        header, points = room.read_bytes().split(b"DATA binary\n", 1)
+        room.unlink()  # the link to what all tests share
+        room.write_bytes(header + b"DATA binary\n" + struct.pack("<f", float("nan")) + points[4:])
+        self.write_config(free_port(socket.SOCK_STREAM))
+        service = self.start(Service(PROGRAM, self.config, self.folder))
+        service.wait_ready()
+
+        def told(line):
+            return f"{room}: 1 of its {len(points) // 12} points are no numbers" in line
+
+        service.err.find(told, "about the map at the start")
+        service.signal(signal.SIGHUP)
+        service.err.find(told, "about the map after the reload")
 
     def test_printed_configuration_reads_back_equal(self):
         self.write_config(502)

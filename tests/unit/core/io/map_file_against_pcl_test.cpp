@@ -46,11 +46,11 @@ TEST(MapFileAgainstPcl, ReadsEveryPcdThatPclWrites) {
     const PclCloud cloud = make_cloud(points);
     pcl::PCDWriter writer;
     ASSERT_EQ(writer.writeBinary(file, cloud), 0);
-    expect_equal(*read_hull_map(file), cloud, 0.0F);
+    expect_equal(read_map_file(file)->cloud, cloud, 0.0F);
     ASSERT_EQ(writer.writeBinaryCompressed(file, cloud), 0);
-    expect_equal(*read_hull_map(file), cloud, 0.0F);
+    expect_equal(read_map_file(file)->cloud, cloud, 0.0F);
     ASSERT_EQ(writer.writeASCII(file, cloud, 9), 0);
-    expect_equal(*read_hull_map(file), cloud, 0.0F);
+    expect_equal(read_map_file(file)->cloud, cloud, 0.0F);
   }
 }
 
@@ -59,9 +59,9 @@ TEST(MapFileAgainstPcl, ReadsEveryPlyThatPclWrites) {
   const std::string file = (folder.path() / "a.ply").string();
   const PclCloud cloud = make_cloud(1000);
   ASSERT_EQ(pcl::io::savePLYFileBinary(file, cloud), 0);
-  expect_equal(*read_hull_map(file), cloud, 0.0F);
+  expect_equal(read_map_file(file)->cloud, cloud, 0.0F);
   ASSERT_EQ(pcl::io::savePLYFileASCII(file, cloud), 0);
-  expect_equal(*read_hull_map(file), cloud, 1e-5F);  // PCL writes 8 significant digits
+  expect_equal(read_map_file(file)->cloud, cloud, 1e-5F);  // PCL writes 8 significant digits
 }
 
 TEST(MapFileAgainstPcl, PclReadsWhatWeWrite) {

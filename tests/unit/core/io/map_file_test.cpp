@@ -57,7 +57,7 @@ TEST(MapFile, WhatWritePcdWroteReadsBackBitForBit) {
   EXPECT_EQ(map->dropped, 0U);
   const std::vector<float> intensity = {1.0F, 2.0F, 3.0F};
   ASSERT_TRUE(write_pcd(folder.path() / "b.pcd", kCloud, intensity));
-  EXPECT_EQ(*read_hull_map(folder.path() / "b.pcd"), kCloud);
+  EXPECT_EQ(read_map_file(folder.path() / "b.pcd")->cloud, kCloud);
 }
 
 TEST(MapFile, ReadsAsciiPcdWithOtherFieldsAroundTheCoordinates) {
@@ -67,9 +67,9 @@ TEST(MapFile, ReadsAsciiPcdWithOtherFieldsAroundTheCoordinates) {
                   "VERSION .7\r\nFIELDS rgb x y normal z\r\nSIZE 4 4 8 4 4\r\nTYPE U F F F F\r\n"
                   "COUNT 1 1 1 3 1\r\nWIDTH 2\r\nHEIGHT 1\r\nPOINTS 2\r\nDATA ascii\r\n"
                   "255 1.5 -2.25 0 0 1 3\r\n7\t0.1 1e2 nan nan nan -7.5");
-  const auto map = read_hull_map(file);
+  const auto map = read_map_file(file);
   ASSERT_TRUE(map) << map.error().message;
-  EXPECT_EQ(*map, Cloud(kCloud.begin(), kCloud.begin() + 2));
+  EXPECT_EQ(map->cloud, Cloud(kCloud.begin(), kCloud.begin() + 2));
 }
 
 TEST(MapFile, ReadsBinaryPcdWithDoublesAndPadding) {
@@ -80,24 +80,24 @@ TEST(MapFile, ReadsBinaryPcdWithDoublesAndPadding) {
                   "VERSION 0.7\nFIELDS _ x y z\nSIZE 1 8 8 8\nTYPE U F F F\nCOUNT 4 1 1 1\nWIDTH 1\n"
                   "HEIGHT 1\nPOINTS 1\nDATA binary\n" +
                       point + "trailing bytes are nobody's");
-  const auto map = read_hull_map(file);
+  const auto map = read_map_file(file);
   ASSERT_TRUE(map) << map.error().message;
-  EXPECT_EQ(*map, Cloud(kCloud.begin(), kCloud.begin() + 1));
+  EXPECT_EQ(map->cloud, Cloud(kCloud.begin(), kCloud.begin() + 1));
 }
 
 TEST(MapFile, ReadsPlyInAllThreeFormats) {
   const TempFolder folder;
   const auto ascii =
       folder.file("a.ply", ply_header("ascii", "2") + "1 1.5 -2.25 3\n0 0.1 100 -7.5\n3 0 1 2\n");
-  EXPECT_EQ(*read_hull_map(ascii), Cloud(kCloud.begin(), kCloud.begin() + 2));
+  EXPECT_EQ(read_map_file(ascii)->cloud, Cloud(kCloud.begin(), kCloud.begin() + 2));
   for (const bool big : {false, true}) {
     const auto file =
         folder.file("b.ply", ply_header(big ? "binary_big_endian" : "binary_little_endian", "2") + "\1" +
                                  floats({1.5F, -2.25F, 3.0F}, big) + "\2" +
                                  floats({0.1F, 100.0F, -7.5F}, big) + "a face");
-    const auto map = read_hull_map(file);
+    const auto map = read_map_file(file);
     ASSERT_TRUE(map) << map.error().message;
-    EXPECT_EQ(*map, Cloud(kCloud.begin(), kCloud.begin() + 2)) << "big-endian: " << big;
+    EXPECT_EQ(map->cloud, Cloud(kCloud.begin(), kCloud.begin() + 2)) << "big-endian: " << big;
   }
 }
 
@@ -111,6 +111,9 @@ TEST(MapFile, FewUnusablePointsAreDroppedAndCounted) {
   ASSERT_TRUE(map) << map.error().message;
   EXPECT_EQ(map->cloud, kCloud);
   EXPECT_EQ(map->dropped, 2U);
+  EXPECT_THAT(remark_on_dropped("a.pcd", *map),
+              StartsWith("a.pcd: 2 of its " + std::to_string(kCloud.size() + 2) + " points are no numbers"));
+  EXPECT_EQ(remark_on_dropped("a.pcd", MapFile{kCloud, 0}), "");
 }
 
 struct Broken {

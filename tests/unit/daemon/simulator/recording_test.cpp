@@ -51,7 +51,7 @@ TEST_F(Recording, SameSeedSameBytesAndItsReplayHasItsFrames) {
   const ConfigReading reading = read_config(one / "hulltrackd.toml", model_names());
   ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
   const Config& config = *reading.config;
-  EXPECT_TRUE(read_hull_map(config.map_file).ok());
+  EXPECT_TRUE(read_map_file(config.map_file).ok());
   ASSERT_TRUE(read_plc_csv(one / "plc.csv").ok());
 
   auto source = PcapSource::open(one / "lidar.pcap");
