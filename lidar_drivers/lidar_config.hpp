@@ -27,6 +27,7 @@ struct LidarConfig {
   Nanoseconds timeout = std::chrono::milliseconds(500);
   TimeSource time_source = TimeSource::receive;
   bool firing_correction = true;
+  std::string place;  // FILE:LINE of its section, for messages; empty = not from a file
   std::vector<std::array<double, 6>> exclude;  // boxes in L: x0,y0,z0,x1,y1,z1, m
 };
 

@@ -29,6 +29,11 @@ constexpr int kReceiveBufferBytes = 8 * 1024 * 1024;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
+/// How a message about `lidar` begins.
+std::string name_of(const LidarConfig& lidar) {
+  return (lidar.place.empty() ? "" : lidar.place + ": ") + "lidar \"" + lidar.name + "\"";
+}
+
 template <typename T>
 void set_option(int fd, int level, int option, const T& value) {
   // An option that the kernel lacks shows in the counters (unstamped) or warnings, not here.
@@ -111,7 +116,7 @@ Result<UdpSource> UdpSource::open(std::span<const LidarConfig> lidars) {
     }
     if (any) continue;
     const auto address = parse_ipv4(lidar.source);
-    if (!address) return Error{"lidar \"" + lidar.name + "\", source: " + address.error().message};
+    if (!address) return Error{name_of(lidar) + ", source: " + address.error().message};
     source.allowed_.push_back(*address);
   }
   return source;
@@ -143,7 +148,7 @@ void UdpSource::enlarge_receive_buffer() {
 }
 
 Result<void> UdpSource::bind_to(const LidarConfig& lidar, bool multicast) {
-  const std::string where = "lidar \"" + lidar.name + "\": ";
+  const std::string where = name_of(lidar) + ": ";
   const auto address = parse_ipv4(lidar.bind);
   if (!address) return Error{where + "bind: " + address.error().message};
   sockaddr_in local{};
@@ -172,14 +177,14 @@ Result<void> UdpSource::bind_to(const LidarConfig& lidar, bool multicast) {
 }
 
 Result<void> UdpSource::join_group(const LidarConfig& lidar) {
-  const std::string where = "lidar \"" + lidar.name + "\", multicast: ";
+  const std::string where = name_of(lidar) + ", multicast: ";
   const auto group = parse_ipv4(lidar.multicast);
   if (!group) return Error{where + group.error().message};
   if (!IN_MULTICAST(*group)) {
     return Error{where + lidar.multicast + " is no group; allowed are 224.0.0.0 to 239.255.255.255"};
   }
   const auto interface = parse_ipv4(lidar.bind);
-  if (!interface) return Error{"lidar \"" + lidar.name + "\", bind: " + interface.error().message};
+  if (!interface) return Error{name_of(lidar) + ", bind: " + interface.error().message};
   ip_mreq request{};
   request.imr_multiaddr.s_addr = htonl(*group);
   request.imr_interface.s_addr = htonl(*interface);

@@ -36,7 +36,6 @@ struct LidarFrameCounters {
   std::uint32_t packets = 0;           // decoded datagrams with a firing in the frame, returns or not
   std::uint32_t packets_lost = 0;      // estimated from sequence, time stamps and azimuth
   std::uint32_t packets_rejected = 0;  // wrong size, foreign sender, bad flag
-  std::uint32_t kernel_overflows = 0;  // SO_RXQ_OVFL increments
   std::uint32_t points = 0;
   std::uint32_t points_over_limit = 0;  // beyond the largest frame that is processed: dropped
 };

@@ -195,6 +195,7 @@ class Reader {
     } else {
       for (std::size_t i = 0; i < list->size(); ++i) {
         LidarConfig lidar;
+        lidar.place = file_ + ':' + std::to_string(line_of(list->get(i)->source()));
         auto sections = lidar_sections(lidar, models_);
         read_table(*list->get(i)->as_table(), kLidarSection, joined(kLidarSection, std::to_string(i)),
                    sections);

@@ -197,10 +197,12 @@ class ServiceTest(unittest.TestCase):
             taken.bind(("127.0.0.1", 0))
             self.lidar_port = taken.getsockname()[1]
             self.write_config(free_port(socket.SOCK_STREAM))
+            line = self.config.read_text(encoding="utf-8").splitlines().index("[[lidar]]") + 1
             for arguments in ((), ("--stderr",)):
                 with self.subTest(arguments):
                     done = self.run_to_end(*arguments)
                     self.assertEqual(done.returncode, 1, done.stderr)
+                    self.assertIn(f"{self.config}:{line}: ", done.stderr)
                     self.assertIn(str(self.lidar_port), done.stderr)
                     told = [text for text in done.stderr.splitlines() if "in use" in text]
                     self.assertEqual(len(told), 1, done.stderr)
