@@ -1,6 +1,9 @@
 // Axis-aligned boxes, metres, in the frame that their owner says.
 #pragma once
 
+#include <cassert>
+#include <span>
+
 #include "core/geometry/cloud.hpp"
 
 namespace hulltrack {
@@ -12,5 +15,16 @@ struct Box {
     return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
   }
 };
+
+/// The tight box of some points: at least one, all finite.
+[[nodiscard]] inline Box bounding_box(std::span<const Point> points) {
+  assert(!points.empty());
+  Box box{points.front(), points.front()};
+  for (const Point& p : points) {
+    box.min = box.min.cwiseMin(p);
+    box.max = box.max.cwiseMax(p);
+  }
+  return box;
+}
 
 }  // namespace hulltrack

@@ -29,6 +29,11 @@ class PointBlocks {
   void sight_within(float range, const Pose& T_L_A, Visit&& visit) const;
 
  private:
+  [[nodiscard]] std::span<const Point> block(std::size_t b) const {
+    const std::size_t first = b * Sightings::kBlock;
+    return std::span(points_).subspan(first, std::min(Sightings::kBlock, points_.size() - first));
+  }
+
   struct Ball {
     Point centre;
     float radius;
@@ -47,11 +52,9 @@ void PointBlocks::sight_within(float range, const Pose& T_L_A, Visit&& visit) co
     if ((R * balls_[b].centre + t).norm() > range + balls_[b].radius + kRounding) {
       continue;
     }
-    const std::size_t first = b * Sightings::kBlock;
-    const auto block = std::span(points_).subspan(first, std::min(Sightings::kBlock, points_.size() - first));
     Sightings seen;
-    sight_block(block, R, t, seen);
-    for (std::size_t i = 0; i < block.size(); ++i) {
+    sight_block(block(b), R, t, seen);
+    for (std::size_t i = 0; i < block(b).size(); ++i) {
       visit(std::as_const(seen), i);
     }
   }

@@ -8,6 +8,7 @@
 
 #include "core/base/text.hpp"
 #include "core/filter/voxel_filter.hpp"
+#include "core/geometry/box.hpp"
 #include "core/registration/point_to_point_icp.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
@@ -29,20 +30,14 @@ double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) 
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 }
 
-}  // namespace
-
 /// Half of the map's length, level, m.
 double half_length(const HullMap* map) {
   assert(map != nullptr);
-  const Cloud& cloud_H = map->cloud_H();
-  Eigen::Array2f low = cloud_H.front().head<2>();
-  Eigen::Array2f high = low;
-  for (const Point& p : cloud_H) {
-    low = low.min(p.head<2>().array());
-    high = high.max(p.head<2>().array());
-  }
-  return static_cast<double>((high - low).maxCoeff()) / 2.0;
+  const Box box = bounding_box(map->cloud_H());
+  return static_cast<double>((box.max - box.min).head<2>().maxCoeff()) / 2.0;
 }
+
+}  // namespace
 
 struct HullTracker::Impl {
   TrackerConfig config;
