@@ -58,11 +58,10 @@ void CorrespondenceCache::reset(std::span<const Point> source, const KdTree& tar
   target_ = &target;
   searches_ = 0;
   margin_ = 0.0F;
-  entries_.resize(source.size());
-  for (Entry& entry : entries_) {
-    entry.near.count = 0;
-    entry.near.clear_radius = -1.0F;  // nothing is known: the first find() searches
-    entry.searched_at = Point::Zero();
+  near_.resize(source.size());
+  for (Neighbourhood& near : near_) {
+    near.count = 0;
+    near.clear_radius = -1.0F;  // nothing is known: the first find() searches
   }
   lanes_.reset((source.size() + kBlock - 1) / kBlock * kBlock);
   farthest_ = 0.0F;
@@ -83,7 +82,7 @@ std::span<const Correspondence> CorrespondenceCache::find(const Pose& T_target_s
   for (std::size_t a = 0; a < awake_.size(); ++a) {
     const Nearest& nearest = nearest_[a];
     if (nearest.squared_distance < squared_gate) {
-      const Neighbourhood& near = entries_[awake_[a]].near;
+      const Neighbourhood& near = near_[awake_[a]];
       pairs_.push_back(
           {places_[a],
            Eigen::Vector3f(near.x[nearest.lane], near.y[nearest.lane], near.z[nearest.lane]).cast<double>(),
@@ -132,13 +131,14 @@ void CorrespondenceCache::look_up(const Pose& T_target_source) {
   queries_.clear();
   radii_.clear();
   for (std::size_t a = 0; a < awake_.size(); ++a) {
-    const Entry& entry = entries_[awake_[a]];
-    places_[a] = R * source_[awake_[a]].cast<double>() + t;
+    const std::uint32_t i = awake_[a];
+    const Neighbourhood& near = near_[i];
+    places_[a] = R * source_[i].cast<double>() + t;
     const Point q = places_[a].cast<float>();
-    const float moved = (q - entry.searched_at).norm();
-    const float clear = entry.near.clear_radius;
+    const float moved = (q - lanes_.searched(i)).norm();
+    const float clear = near.clear_radius;
     const float reach = clear - moved - kRounding * (clear + moved);
-    nearest_[a] = entry.near.count > 0 ? nearest_of(entry.near, q) : Nearest{};
+    nearest_[a] = near.count > 0 ? nearest_of(near, q) : Nearest{};
     const bool known = reach > 0.0F && std::min(nearest_[a].squared_distance, squared_gate) < reach * reach;
     if (!known) {
       unknown_.push_back(static_cast<std::uint32_t>(a));
@@ -156,7 +156,7 @@ void CorrespondenceCache::search_unknown() {
   for (std::size_t u = 0; u < unknown_.size(); ++u) {
     const std::uint32_t a = unknown_[u];
     const std::uint32_t i = awake_[a];
-    entries_[i] = {answers_[u], queries_[u]};
+    near_[i] = answers_[u];
     nearest_[a] = answers_[u].count > 0 ? nearest_of(answers_[u], queries_[u]) : Nearest{};
     const float clear = std::min(std::sqrt(nearest_[a].squared_distance), answers_[u].clear_radius);
     lanes_.searched_x[i] = queries_[u].x();

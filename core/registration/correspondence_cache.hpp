@@ -6,7 +6,7 @@
 // nearer than that, it is the nearest of all; and if (radius - m) reaches the gate, there is no other.
 // Clutter, which has no partner from the first search to the last, is passed over many points at a time.
 // Frames: source in its own, target in the tree's; metres. No failure; points that are not finite have no
-// partner. Thread rule: one owner; scratch memory is kept. Cost: 210 bytes a source point.
+// partner. Thread rule: one owner; scratch memory is kept. Cost: 200 bytes a source point.
 #pragma once
 
 #include <cstddef>
@@ -44,13 +44,9 @@ class CorrespondenceCache {
   [[nodiscard]] std::size_t searches() const { return searches_; }
 
  private:
-  struct Entry {
-    Neighbourhood near;
-    Point searched_at;
-  };
   struct Nearest {
     float squared_distance = std::numeric_limits<float>::infinity();
-    std::uint32_t lane = 0;  // in the entry's neighbourhood
+    std::uint32_t lane = 0;  // in the point's neighbourhood
   };
 
   // Source points in lanes: where they are, where they were searched for, and how far from there they
@@ -59,6 +55,9 @@ class CorrespondenceCache {
     std::vector<float> x, y, z, searched_x, searched_y, searched_z, alone;
 
     void reset(std::size_t size);
+    [[nodiscard]] Point searched(std::size_t i) const {
+      return {searched_x[i], searched_y[i], searched_z[i]};
+    }
   };
 
   [[nodiscard]] static Nearest nearest_of(const Neighbourhood& near, const Point& q);
@@ -71,7 +70,7 @@ class CorrespondenceCache {
   const KdTree* target_ = nullptr;
   std::size_t searches_ = 0;
 
-  std::vector<Entry> entries_;           // per source point
+  std::vector<Neighbourhood> near_;      // per source point: what its last search brought
   Lanes lanes_;                          // per source point, filled up to whole blocks
   float farthest_ = 0.0F;                // of the source points, from their origin, m
   std::vector<std::uint32_t> awake_;     // source points that may have a partner, in order
