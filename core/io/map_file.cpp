@@ -93,8 +93,7 @@ std::string remark_on_dropped(const std::filesystem::path& file, const MapFile& 
   return file.string() + ": " + std::to_string(map.dropped) + " of its " +
          counted(map.dropped + map.cloud.size(), "point") +
          " are no numbers or farther than 10 km from the origin and were left out; look whether a part of "
-         "the "
-         "hull is missing in it, and make the map again if so";
+         "the hull is missing in it, and make the map again if so";
 }
 
 }  // namespace hulltrack
