@@ -1,5 +1,7 @@
 #include "tests/integration/service/loader_bench.hpp"
 
+#include <algorithm>
+
 namespace hulltrack {
 
 CyclingPlc::CyclingPlc(std::uint16_t port)
@@ -47,6 +49,11 @@ std::optional<WriteBlock> CyclingPlc::wait_for(const std::function<bool(const Wr
 std::vector<WriteBlock> CyclingPlc::blocks() const {
   const std::lock_guard lock(mutex_);
   return blocks_;
+}
+
+bool fell_behind(const std::vector<WriteBlock>& blocks) {
+  return std::any_of(blocks.begin(), blocks.end(),
+                     [](const WriteBlock& block) { return (block.faults & fault::frame_dropped) != 0; });
 }
 
 Prepared room_service(std::uint16_t lidar_port, std::uint16_t plc_port) {

@@ -38,6 +38,9 @@ class CyclingPlc {
   std::jthread cycle_;
 };
 
+/// True if scans came faster than this machine processed them: no place for a live run.
+[[nodiscard]] bool fell_behind(const std::vector<WriteBlock>& blocks);
+
 /// The room as map, the room's LiDAR on `lidar_port`, a PLC on `plc_port`.
 [[nodiscard]] Prepared room_service(std::uint16_t lidar_port, std::uint16_t plc_port);
 

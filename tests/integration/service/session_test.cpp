@@ -81,8 +81,21 @@ class SessionTest : public testing::Test {
   std::unique_ptr<Session> session;
 };
 
-TEST_F(SessionTest, TracksARoomAndLeavesHealthZeroAndStateStopped) {
-  start();
+constexpr const char* kTooSlow = "this machine is too slow for a live run: scans were left out";
+
+// A session that tracks the room.
+class TrackingSession : public SessionTest {
+ protected:
+  void SetUp() override {
+    start();
+    if (!wait_for(healthy)) {
+      ASSERT_TRUE(fell_behind(plc->blocks())) << "no health within a minute";
+      GTEST_SKIP() << kTooSlow;
+    }
+  }
+};
+
+TEST_F(TrackingSession, TracksARoomAndLeavesHealthZeroAndStateStopped) {
   const auto block = wait_for(healthy);
   ASSERT_TRUE(block);
   EXPECT_EQ(block->state, State::tracking);
@@ -102,7 +115,10 @@ TEST_F(SessionTest, HeartbeatGrowsByOneAtEveryWriteAlsoAcrossAReload) {
   RegisterMemory before;
   before.heartbeat = 65530;
   start(before);
-  ASSERT_TRUE(wait_for(healthy));
+  if (!wait_for(healthy)) {
+    ASSERT_TRUE(fell_behind(plc->blocks()));
+    GTEST_SKIP() << kTooSlow;
+  }
   const RegisterMemory last = session->end(Session::Ending::for_reload);
   session.reset();
   start(last);
@@ -118,9 +134,7 @@ TEST_F(SessionTest, HeartbeatGrowsByOneAtEveryWriteAlsoAcrossAReload) {
   }
 }
 
-TEST_F(SessionTest, AReloadKeepsThePoseWithHealthZeroItsAgeGrowsAndFramesGoOn) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AReloadKeepsThePoseWithHealthZeroItsAgeGrowsAndFramesGoOn) {
   const RegisterMemory memory = session->end(Session::Ending::for_reload);
   session.reset();
   const auto old_blocks = plc->blocks();
@@ -145,18 +159,14 @@ TEST_F(SessionTest, AReloadKeepsThePoseWithHealthZeroItsAgeGrowsAndFramesGoOn) {
   EXPECT_GT(again->frame, last.frame);
 }
 
-TEST_F(SessionTest, AFarewellThatFailsIsToldAsSuch) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AFarewellThatFailsIsToldAsSuch) {
   plc.reset();
   session->end(Session::Ending::for_good);
   EXPECT_FALSE(session->farewell().ok());
   EXPECT_THAT(farewell_words(session->farewell()), testing::HasSubstr("may still say health 1"));
 }
 
-TEST_F(SessionTest, ASilentLidarTakesTheHealthAndGivesItBack) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, ASilentLidarTakesTheHealthAndGivesItBack) {
   const auto silent = fault_after([this] { lidar.mute(true); }, fault::lidar_silent);
   ASSERT_TRUE(silent);
   EXPECT_FALSE(silent->health);
@@ -168,9 +178,7 @@ TEST_F(SessionTest, ASilentLidarTakesTheHealthAndGivesItBack) {
   EXPECT_GE(log.count("packets again"), 1U);
 }
 
-TEST_F(SessionTest, AForeignSenderIsNamedAndChangesNothing) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AForeignSenderIsNamedAndChangesNothing) {
   RoomLidar foreign(lidar_port);
   ASSERT_TRUE(fault_after([&] { foreign.send_from(INADDR_LOOPBACK + 1); }, fault::foreign_packets));
   const auto block = wait_for(healthy);
@@ -192,9 +200,7 @@ TEST_F(SessionTest, PacketsOfAnotherModelAreToldAlthoughNoFrameComesOfThem) {
   EXPECT_GE(log.count("not those of a velodyne_vlp32c"), 1U);
 }
 
-TEST_F(SessionTest, AMalformedPacketIsToldWhileTheLidarIsSilent) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AMalformedPacketIsToldWhileTheLidarIsSilent) {
   ASSERT_TRUE(fault_after([this] { lidar.mute(true); }, fault::lidar_silent));
   const auto told =
       fault_after([this] { send_to_lidar_port("no packet of a LiDAR"); }, fault::foreign_packets);
@@ -206,21 +212,20 @@ TEST_F(SessionTest, StartsWithoutAPlcAndServesItOnceItIsThere) {
   plc.reset();
   start();
   plc = std::make_unique<CyclingPlc>(plc_port);
-  EXPECT_TRUE(wait_for(healthy));
+  if (!wait_for(healthy)) {
+    ASSERT_TRUE(fell_behind(plc->blocks()));
+    GTEST_SKIP() << kTooSlow;
+  }
 }
 
-TEST_F(SessionTest, ALostLinkIsToldAndMended) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, ALostLinkIsToldAndMended) {
   ASSERT_TRUE(fault_after(sim::PlcFault::reset, 1, fault::plc_link_lost));
   EXPECT_TRUE(wait_for(healthy));
   ASSERT_TRUE(fault_after(sim::PlcFault::late_reply, 1, fault::plc_link_lost));
   EXPECT_TRUE(wait_for(healthy));
 }
 
-TEST_F(SessionTest, APlcThatFallsSilentIsServedAgainWhenItSpeaks) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, APlcThatFallsSilentIsServedAgainWhenItSpeaks) {
   for (const sim::PlcFault fault :
        {sim::PlcFault::silent, sim::PlcFault::black_hole, sim::PlcFault::pool_full}) {
     plc->server().set_fault(fault);
@@ -231,9 +236,7 @@ TEST_F(SessionTest, APlcThatFallsSilentIsServedAgainWhenItSpeaks) {
   EXPECT_EQ(plc->server().most_connections(), 1) << "never more than one socket";
 }
 
-TEST_F(SessionTest, AFloodFromTheRightAddressKeepsTheRhythm) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AFloodFromTheRightAddressKeepsTheRhythm) {
   {
     std::vector<std::unique_ptr<RoomLidar>> flood;
     for (int copy = 0; copy < 5; ++copy) {
@@ -246,9 +249,7 @@ TEST_F(SessionTest, AFloodFromTheRightAddressKeepsTheRhythm) {
   EXPECT_TRUE(wait_for(healthy));
 }
 
-TEST_F(SessionTest, AFrozenPlcHeartbeatIsStaleData) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AFrozenPlcHeartbeatIsStaleData) {
   const auto stale =
       fault_after([this] { plc->server().set_fault(sim::PlcFault::frozen_heartbeat); }, fault::plc_stale);
   ASSERT_TRUE(stale);
@@ -258,9 +259,7 @@ TEST_F(SessionTest, AFrozenPlcHeartbeatIsStaleData) {
   EXPECT_TRUE(wait_for(healthy));
 }
 
-TEST_F(SessionTest, AnImpossibleJointValueIsRefused) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, AnImpossibleJointValueIsRefused) {
   ASSERT_TRUE(
       fault_after([this] { plc->server().set_fault(sim::PlcFault::out_of_range); }, fault::plc_value));
   EXPECT_TRUE(wait_for([](const WriteBlock& block) { return !block.health; }));
@@ -268,9 +267,7 @@ TEST_F(SessionTest, AnImpossibleJointValueIsRefused) {
   EXPECT_TRUE(wait_for(healthy));
 }
 
-TEST_F(SessionTest, ObeysTheCommandWordAndEchoesIt) {
-  start();
-  ASSERT_TRUE(wait_for(healthy));
+TEST_F(TrackingSession, ObeysTheCommandWordAndEchoesIt) {
   plc->server().set_command(kCommandHold);
   const auto held = wait_for([](const WriteBlock& block) { return block.state == State::held; });
   ASSERT_TRUE(held);
