@@ -1,5 +1,7 @@
 #include "tests/integration/service/loader_bench.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 
 namespace hulltrack {
@@ -51,9 +53,12 @@ std::vector<WriteBlock> CyclingPlc::blocks() const {
   return blocks_;
 }
 
-bool fell_behind(const std::vector<WriteBlock>& blocks) {
-  return std::any_of(blocks.begin(), blocks.end(),
-                     [](const WriteBlock& block) { return (block.faults & fault::frame_dropped) != 0; });
+void judge_missing_health(const CyclingPlc& plc) {
+  const std::vector<WriteBlock> blocks = plc.blocks();
+  ASSERT_TRUE(std::any_of(blocks.begin(), blocks.end(), [](const WriteBlock& block) {
+    return (block.faults & fault::frame_dropped) != 0;
+  })) << "no health within a minute";
+  GTEST_SKIP() << "this machine is too slow for a live run: scans were left out";
 }
 
 Prepared room_service(std::uint16_t lidar_port, std::uint16_t plc_port) {

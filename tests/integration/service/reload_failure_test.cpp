@@ -56,8 +56,7 @@ TEST(ReloadFailure, WithNothingToFallBackToTheRegistersEndAtHealthZero) {
   if (!healthy) {
     ASSERT_EQ(kill(getpid(), SIGTERM), 0);
     end.get();
-    ASSERT_TRUE(fell_behind(plc.blocks())) << "no health within a minute";
-    GTEST_SKIP() << "this machine is too slow for a live run: scans were left out";
+    return judge_missing_health(plc);
   }
   g_every_port_is_in_use = true;
   ASSERT_EQ(kill(getpid(), SIGHUP), 0);
