@@ -52,9 +52,10 @@ void PointBlocks::sight_within(float range, const Pose& T_L_A, Visit&& visit) co
     if ((R * balls_[b].centre + t).norm() > range + balls_[b].radius + kRounding) {
       continue;
     }
+    const std::span<const Point> points = block(b);
     Sightings seen;
-    sight_block(block(b), R, t, seen);
-    for (std::size_t i = 0; i < block(b).size(); ++i) {
+    sight_block(points, R, t, seen);
+    for (std::size_t i = 0; i < points.size(); ++i) {
       visit(std::as_const(seen), i);
     }
   }
