@@ -19,6 +19,7 @@ HullMap::HullMap(Cloud cloud_H)
       tree_(cloud_H_),
       subset_H_(thinned(cloud_H_, kSubsetVoxel)),
       surfels_(compute_surfels(subset_H_, cloud_H_, tree_)),
-      occluders_H_(thinned(cloud_H_, kOccluderVoxel)) {}
+      occluders_H_(thinned(cloud_H_, kOccluderVoxel)),
+      planes_(cloud_H_, tree_) {}
 
 }  // namespace hulltrack

@@ -9,6 +9,7 @@
 
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/point_blocks.hpp"
+#include "core/map/plane_map.hpp"
 #include "core/map/surfel.hpp"
 #include "core/search/kdtree.hpp"
 
@@ -31,12 +32,16 @@ class HullMap {
   [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
   [[nodiscard]] const PointBlocks& occluders_H() const { return occluders_H_; }
 
+  /// The flat parts, for registration.
+  [[nodiscard]] const PlaneMap& planes() const { return planes_; }
+
  private:
   Cloud cloud_H_;
   KdTree tree_;
   Cloud subset_H_;
   std::vector<Surfel> surfels_;
   PointBlocks occluders_H_;
+  PlaneMap planes_;
 };
 
 }  // namespace hulltrack

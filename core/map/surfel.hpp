@@ -30,6 +30,8 @@ inline constexpr std::size_t kSurfaceClasses = 3;                               
 
 struct Surfel {
   Point normal_H = Point::UnitZ();
+  /// Mean of the map around the point: where the plane is, with a tenth of one map point's error.
+  Point centre_H = Point::Zero();
   SurfaceClass surface = SurfaceClass::other;
   /// The map is a plane all around the point: the normal can be trusted and no edge is near.
   bool planar = false;

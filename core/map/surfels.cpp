@@ -40,6 +40,7 @@ Surfel surfel_of(const Point& p, const std::vector<Neighbour>& neighbours, const
   const auto spread = [&solver](int i) { return std::sqrt(std::max(0.0, solver.eigenvalues()[i])); };
   Surfel surfel;
   surfel.normal_H = solver.eigenvectors().col(0).cast<float>();
+  surfel.centre_H = p + centroid.cast<float>();
   surfel.surface = classify(surfel.normal_H);
   surfel.planar = spread(0) < kFlat && spread(1) > kNarrow && centroid.norm() < kOffCentre;
   return surfel;

@@ -86,7 +86,7 @@ std::span<const Correspondence> CorrespondenceCache::find(const Pose& T_target_s
       pairs_.push_back(
           {places_[a],
            Eigen::Vector3f(near.x[nearest.lane], near.y[nearest.lane], near.z[nearest.lane]).cast<double>(),
-           std::sqrt(static_cast<double>(nearest.squared_distance))});
+           std::sqrt(static_cast<double>(nearest.squared_distance)), near.index[nearest.lane]});
     }
   }
   return pairs_;

@@ -26,6 +26,7 @@ struct Correspondence {
   Eigen::Vector3d source;  // in the target's frame, m
   Eigen::Vector3d target;  // m
   double distance;         // m, as the search found it: in float
+  std::uint32_t index;     // of the target point, in the cloud that the tree was made of
 };
 
 class CorrespondenceCache {

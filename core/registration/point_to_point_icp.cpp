@@ -39,22 +39,6 @@ void report(const Sums& sums, IcpResult& result) {
 
 }  // namespace
 
-const char* describe(IcpStop stop) {
-  switch (stop) {
-    case IcpStop::converged:
-      return "converged";
-    case IcpStop::iteration_limit:
-      return "still moving at the iteration limit";
-    case IcpStop::too_few_matches:
-      return "fewer than three points match the map";
-    case IcpStop::degenerate_geometry:
-      return "the matched points lie on one line";
-    case IcpStop::invalid_start:
-      return "the start pose is not finite";
-  }
-  return "unknown";
-}
-
 PointToPointIcp::PointToPointIcp(const IcpConfig& config)
     : config_(config), correspondences_(config.max_correspondence_distance) {
   assert(config.max_iterations >= 1 && config.max_correspondence_distance > 0.0);

@@ -14,6 +14,7 @@
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/registration/correspondence_cache.hpp"
+#include "core/registration/icp_result.hpp"
 #include "core/search/kdtree.hpp"
 
 namespace hulltrack {
@@ -24,36 +25,6 @@ struct IcpConfig {
   int max_iterations = 50;                   // >= 1
   double translation_epsilon = 0.001;        // m
   double rotation_epsilon = radians(0.1);    // rad
-};
-
-enum class IcpStop {
-  converged,            // the last increment was below both epsilons
-  iteration_limit,      // it was not, after max_iterations
-  too_few_matches,      // fewer than three source points have a target point within the gate
-  degenerate_geometry,  // the matched points lie on one line: a rotation is free
-  invalid_start,        // the start pose is not finite
-};
-
-/// One clause for a log line.
-[[nodiscard]] const char* describe(IcpStop stop);
-
-/// Figures are those of the last iteration's search, that is before its increment; zeros if it matched
-/// nothing.
-struct IcpResult {
-  Pose T_target_source = Pose::Identity();  // the last good estimate, also when not converged
-  bool converged = false;                   // stop == IcpStop::converged
-  IcpStop stop = IcpStop::invalid_start;
-  int iterations = 0;             // searches made
-  std::uint32_t matched = 0;      // source points with a target point within the gate
-  double rms_residual = 0.0;      // of the matched distances, m
-  double mean_residual = 0.0;     // of the matched distances, m
-  double last_translation = 0.0;  // of the last increment, m
-  double last_rotation = 0.0;     // of the last increment, rad
-
-  /// J^T J of the matched pairs against a twist [rotation; translation] of the source about `centre`, in
-  /// the target's frame: rad, m, unit weights.
-  Matrix6 normal_matrix = Matrix6::Zero();
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // centroid of the matched source points, target frame, m
 };
 
 class PointToPointIcp {

@@ -9,6 +9,7 @@
 #include "core/base/text.hpp"
 #include "core/filter/voxel_filter.hpp"
 #include "core/geometry/box.hpp"
+#include "core/registration/point_to_plane_icp.hpp"
 #include "core/registration/point_to_point_icp.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
@@ -46,9 +47,11 @@ struct HullTracker::Impl {
   ScanFilter scan_filter;
   VoxelFilter voxel_filter;
   PointToPointIcp icp;
+  PointToPlaneIcp plane_icp;
   Visibility visibility;
   Integrity integrity;
   HealthMemory memory;
+  Pose last_T_H_W = Pose::Identity();
 
   // Buffers of one frame, kept for their capacity.
   FilteredScan filtered;
@@ -67,6 +70,7 @@ struct HullTracker::Impl {
         scan_filter(machine, std::move(sensors), c.hull.region),
         voxel_filter(c.registration.voxel_size),
         icp(icp_config(c.registration)),
+        plane_icp({c.registration.max_iterations}),
         visibility(c.health.metric_range),
         views(scan_filter.sensors().size()) {}
 
@@ -112,7 +116,11 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
 void HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
   voxel_filter.filter(filtered.hull_W, thinned_W);
   // Each frame starts from the PLC alone, independent of the past (Guo 2025, 2.2).
-  const IcpResult icp_result = icp.align(thinned_W, map->tree(), Pose::Identity());
+  const IcpResult icp_result =
+      config.registration.method == RegistrationMethod::automatic
+          ? plane_icp.align(thinned_W, map->planes(), memory.last ? last_T_H_W : Pose::Identity())
+          : icp.align(thinned_W, map->tree(), Pose::Identity());
+  last_T_H_W = icp_result.T_target_source;
   const bool found = icp_result.stop == IcpStop::converged || icp_result.stop == IcpStop::iteration_limit;
   result.registered = found;
   result.converged = icp_result.converged;

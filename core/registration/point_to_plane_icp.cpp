@@ -1,0 +1,160 @@
+#include "core/registration/point_to_plane_icp.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+namespace hulltrack {
+namespace {
+
+// Kernels of the first rounds of a fine alignment, m; the last one stays. It is one and a half sigma of a
+// return's range: narrower costs efficiency, wider lets in what lies a few centimetres off.
+constexpr std::array<double, 4> kKernels = {0.20, 0.10, 0.05, 0.03};
+
+// Gates of an approach and how often each is searched with, m. A gate reaches planes behind the right one
+// as long as there are any, so it closes in steps of half.
+struct Stage {
+  float gate;
+  int rounds;
+};
+constexpr std::array<Stage, 4> kApproach = {{{3.0F, 4}, {1.5F, 3}, {0.8F, 3}, {0.4F, 3}}};
+
+constexpr int kInnerSteps = 2;
+
+double kernel_of_round(int round) {
+  return kKernels[std::min(static_cast<std::size_t>(round), kKernels.size() - 1)];
+}
+
+/// The pair's residual with its point at p, or nothing if p is beside the plane's part.
+struct OnPlane {
+  double residual;
+  bool beside;
+};
+OnPlane on_plane(const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double besides) {
+  const Eigen::Vector3d d = p - plane.centre_H.cast<double>();
+  const double r = plane.normal_H.cast<double>().dot(d);
+  return {r, d.squaredNorm() - r * r > besides * besides};
+}
+
+}  // namespace
+
+PointToPlaneIcp::PointToPlaneIcp(const PlaneIcpConfig& config) : config_(config), correspondences_(kGate) {
+  assert(config.max_iterations >= 1);
+}
+
+PlaneSystem PointToPlaneIcp::system_of(std::span<const Correspondence> pairs, const PlaneMap& map,
+                                       const Pose& T_step, double kernel) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Correspondence& pair : pairs) {
+    sum += pair.source;
+  }
+  PlaneSystem system(T_step * Eigen::Vector3d(sum / std::max(1.0, static_cast<double>(pairs.size()))), kernel);
+  for (const Correspondence& pair : pairs) {
+    const PlaneMap::Plane& plane = map.planes()[pair.index];
+    const Eigen::Vector3d p = T_step * pair.source;
+    const OnPlane at = on_plane(p, plane, kBesides);
+    if (!at.beside) {
+      system.add(p, plane.normal_H.cast<double>(), at.residual);
+    }
+  }
+  return system;
+}
+
+IcpResult PointToPlaneIcp::align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init) {
+  IcpResult result;
+  if (!T_init.matrix().allFinite()) {
+    return result;
+  }
+  result.T_target_source = T_init;
+  result.stop = IcpStop::iteration_limit;
+  correspondences_.reset(source, map.tree());
+  for (int round = 0; round < config_.max_iterations; ++round) {
+    const std::span<const Correspondence> pairs = correspondences_.find(result.T_target_source);
+    ++result.iterations;
+    Pose T_round = Pose::Identity();  // since the search
+    for (int step = 0; step < kInnerSteps; ++step) {
+      const PlaneSystem system = system_of(pairs, map, T_round, kernel_of_round(round));
+      const PlaneSystem::Solution solution = system.solve();
+      result.matched = system.pairs();
+      result.rms_residual = system.rms();
+      result.normal_matrix = system.normal_matrix();
+      result.centre = system.centre();
+      result.free_directions = solution.free;
+      if (solution.free == 6) {
+        result.stop = IcpStop::too_few_matches;
+        return result;
+      }
+      T_round = pose_from_twist_about(system.centre(), solution.twist) * T_round;
+      result.last_rotation = solution.twist.head<3>().norm();
+      result.last_translation = solution.twist.tail<3>().norm();
+    }
+    result.T_target_source = T_round * result.T_target_source;
+    if (static_cast<std::size_t>(round) + 1 >= kKernels.size() &&
+        result.last_translation < config_.translation_epsilon &&
+        result.last_rotation < config_.rotation_epsilon) {
+      result.stop = IcpStop::converged;
+      result.converged = true;
+      break;
+    }
+  }
+  return result;
+}
+
+void PointToPlaneIcp::move(std::span<const Point> source, const Pose& T) {
+  const Eigen::Matrix3f R = T.linear().cast<float>();
+  const Point t = T.translation().cast<float>();
+  moved_.clear();
+  for (const Point& p : source) {
+    moved_.push_back(R * p + t);
+  }
+  nearest_.resize(moved_.size());
+}
+
+Pose PointToPlaneIcp::approach(std::span<const Point> source, const PlaneMap& map, const Pose& T_init) {
+  Pose T = T_init;
+  for (const Stage& stage : kApproach) {
+    for (int round = 0; round < stage.rounds; ++round) {
+      move(source, T);
+      map.tree().nearest(moved_, stage.gate, nearest_);
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (const Point& p : moved_) {
+        sum += p.cast<double>();
+      }
+      PlaneSystem system(sum / std::max<double>(1.0, static_cast<double>(moved_.size())),
+                         static_cast<double>(stage.gate) / 2.0);
+      for (std::size_t i = 0; i < moved_.size(); ++i) {
+        if (nearest_[i].index != Neighbour::kNone) {
+          const PlaneMap::Plane& plane = map.planes()[nearest_[i].index];
+          const Eigen::Vector3d p = moved_[i].cast<double>();
+          system.add(p, plane.normal_H.cast<double>(), on_plane(p, plane, kBesides).residual);
+        }
+      }
+      const PlaneSystem::Solution solution = system.solve();
+      T = pose_from_twist_about(system.centre(), solution.twist) * T;
+      if (!T.matrix().allFinite()) {
+        return T_init;
+      }
+    }
+  }
+  return T;
+}
+
+PlaneScore PointToPlaneIcp::score(std::span<const Point> source, const PlaneMap& map, const Pose& T) {
+  move(source, T);
+  map.tree().nearest(moved_, static_cast<float>(kGate), nearest_);
+  PlaneScore score;
+  score.points = static_cast<std::uint32_t>(source.size());
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    if (nearest_[i].index == Neighbour::kNone) {
+      continue;
+    }
+    const OnPlane at = on_plane(moved_[i].cast<double>(), map.planes()[nearest_[i].index], kBesides);
+    if (!at.beside) {
+      score.worth += kScoreKernel * kScoreKernel / (kScoreKernel * kScoreKernel + at.residual * at.residual);
+    }
+  }
+  return score;
+}
+
+}  // namespace hulltrack
