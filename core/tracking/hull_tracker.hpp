@@ -18,6 +18,7 @@
 #include "core/kinematics/loader_kinematics.hpp"
 #include "core/map/hull_map.hpp"
 #include "core/tracking/metrics.hpp"
+#include "core/tracking/motion_products.hpp"
 #include "core/tracking/tracker_config.hpp"
 
 namespace hulltrack {
@@ -43,12 +44,19 @@ struct TrackResult {
   std::uint32_t matched = 0;        // points of the last ICP iteration
   double sigma_translation = -1.0;  // 1-sigma, largest principal axis, m; -1 = unknown
   double sigma_rotation = -1.0;     // rad; -1 = unknown
-  DistanceMetrics metrics;          // metrics.valid tells whether there are any
+  /// Of the pose's error at the reference point, [rotation; translation], W, rad and m; meaningful when
+  /// sigma_translation >= 0.
+  Matrix6 covariance = Matrix6::Zero();
+  double bend = 0.0;         // m, sag (+) or hog (-) of amidships against the ends since the map was made
+  double sigma_bend = -1.0;  // m; -1 = unknown
+  DistanceMetrics metrics;   // metrics.valid tells whether there are any
 
   State state = State::starting;  // starting/held/fault as far as the frame's inputs tell
   bool health = false;            // true if and only if state == tracking
   Faults faults = 0;
   std::string reason;  // why health is 0, in plain words with figures; empty when healthy
+
+  MotionProducts motion;
 };
 
 class HullTracker {

@@ -38,6 +38,48 @@ void append_metrics(std::string& line, const DistanceMetrics& m) {
   }
 }
 
+void append_motion(std::string& line, const MotionProducts& motion) {
+  if (motion.now) {
+    for (const double v :
+         {motion.now->draft, degrees(motion.now->heel), degrees(motion.now->trim), motion.now->surge}) {
+      append(line, v);
+    }
+  } else {
+    line += ",,,,";
+  }
+  if (motion.rate) {
+    constexpr double kHour = 3600.0;
+    constexpr double kMinute = 60.0;
+    for (const double v : {motion.rate->draft * kHour, degrees(motion.rate->heel) * kHour,
+                           degrees(motion.rate->trim) * kHour, motion.rate->surge * kMinute}) {
+      append(line, v);
+    }
+  } else {
+    line += ",,,,";
+  }
+}
+
+void append_bend(std::string& line, const TrackResult& r) {
+  if (r.sigma_bend < 0.0) {
+    line += ",,";
+    return;
+  }
+  append(line, r.bend);
+  append(line, r.sigma_bend);
+}
+
+void append_covariance(std::string& line, const TrackResult& r) {
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      if (r.sigma_translation < 0.0) {
+        line += ',';
+      } else {
+        append(line, r.covariance(row, column));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::string frame_csv_line(const TrackResult& r, std::optional<double> processing_ms) {
@@ -55,8 +97,13 @@ std::string frame_csv_line(const TrackResult& r, std::optional<double> processin
   append(line, r.iterations);
   if (processing_ms) {
     append(line, *processing_ms);
-    line.pop_back();
+  } else {
+    line += ',';
   }
+  append_motion(line, r.motion);
+  append_bend(line, r);
+  append_covariance(line, r);
+  line.pop_back();
   return line;
 }
 

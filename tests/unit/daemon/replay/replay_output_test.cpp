@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
 
 #include "daemon/tools/frame_csv.hpp"
 #include "daemon/tools/replay_summary.hpp"
@@ -10,6 +13,7 @@ namespace hulltrack {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TrackResult result(std::uint32_t frame, double x, State state) {
   TrackResult r;
@@ -26,17 +30,71 @@ TrackResult result(std::uint32_t frame, double x, State state) {
   return r;
 }
 
-TEST(FrameCsv, LineHasTheFieldsOfItsHeader) {
-  const auto commas = [](const std::string& s) { return std::count(s.begin(), s.end(), ','); };
-  TrackResult registered = result(3, 0.1, State::tracking);
+/// The text of each column of a line, by the names of the header.
+std::map<std::string, std::string> columns(const std::string& line) {
+  std::istringstream names(kFrameCsvHeader);
+  std::istringstream values(line + ',');
+  std::map<std::string, std::string> fields;
+  for (std::string name; std::getline(names, name, ',');) {
+    EXPECT_TRUE(std::getline(values, fields[name], ',')) << "no " << name << " in " << line;
+  }
+  std::string more;
+  EXPECT_FALSE(std::getline(values, more, ',')) << more << " after the last field of " << line;
+  return fields;
+}
+
+TEST(FrameCsv, LineBeginsWithTheFieldsThatItAlwaysHad) {
+  EXPECT_THAT(frame_csv_line(result(3, 0.1, State::tracking), 1.5),
+              StartsWith("3,350000000,1,1,0,0.1,0,0,0,0,0,0.07,0.08,0.09,0.1,0.125,900,-1,-1,4,1.5,"));
+}
+
+TEST(FrameCsv, WhatIsUnknownIsEmpty) {
   TrackResult not_registered;
   not_registered.state = State::fault;
   not_registered.faults = fault::plc_stale;
-  EXPECT_EQ(frame_csv_line(registered, 1.5),
-            "3,350000000,1,1,0,0.1,0,0,0,0,0,0.07,0.08,0.09,0.1,0.125,900,-1,-1,4,1.5");
-  EXPECT_EQ(frame_csv_line(not_registered, std::nullopt), "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0,");
-  EXPECT_EQ(commas(frame_csv_line(not_registered, std::nullopt)), commas(kFrameCsvHeader));
-  EXPECT_EQ(commas(frame_csv_line(registered, 1.5)), commas(kFrameCsvHeader));
+  const std::string line = frame_csv_line(not_registered, std::nullopt);
+  EXPECT_EQ(line, "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0," + std::string(10 + 21, ','));
+  EXPECT_EQ(columns(line).size(), 21U + 10U + 21U);
+}
+
+TEST(FrameCsv, MotionHasTheUnitsOfTheOperator) {
+  TrackResult r = result(3, 0.1, State::tracking);
+  r.motion.now = ShipMotion{1.25, radians(0.5), radians(-0.25), -0.125};
+  r.motion.rate = ShipMotion{1.0 / 3600.0, radians(2.0) / 3600.0, radians(-4.0) / 3600.0, 0.125};
+  auto fields = columns(frame_csv_line(r, 1.5));
+  EXPECT_EQ(fields["draft"], "1.25");
+  EXPECT_NEAR(std::stod(fields["heel"]), 0.5, 1e-12);
+  EXPECT_NEAR(std::stod(fields["trim"]), -0.25, 1e-12);
+  EXPECT_EQ(fields["surge"], "-0.125");
+  EXPECT_NEAR(std::stod(fields["draft_rate"]), 1.0, 1e-12);
+  EXPECT_NEAR(std::stod(fields["heel_rate"]), 2.0, 1e-12);
+  EXPECT_NEAR(std::stod(fields["trim_rate"]), -4.0, 1e-12);
+  EXPECT_EQ(fields["surge_rate"], "7.5");
+  EXPECT_EQ(fields["bend"] + fields["sigma_bend"] + fields["c_rx_rx"], "");
+}
+
+TEST(FrameCsv, CovarianceAndBendStandUnderTheirNames) {
+  TrackResult r = result(3, 0.1, State::tracking);
+  r.sigma_translation = 0.01;
+  r.bend = -0.0625;
+  r.sigma_bend = 0.03125;
+  const std::array<std::string, 6> names{"rx", "ry", "rz", "x", "y", "z"};
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) {
+      r.covariance(i, j) = 10 * std::min(i, j) + std::max(i, j);
+    }
+  }
+  auto fields = columns(frame_csv_line(r, std::nullopt));
+  EXPECT_EQ(fields["ms"], "");
+  EXPECT_EQ(fields["bend"], "-0.0625");
+  EXPECT_EQ(fields["sigma_bend"], "0.03125");
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = i; j < 6; ++j) {
+      const std::string name = "c_" + names[i] + "_" + names[j];
+      ASSERT_TRUE(fields.contains(name)) << name;
+      EXPECT_EQ(fields[name], std::to_string(10 * i + j)) << name;
+    }
+  }
 }
 
 TEST(TruthAt, InterpolatesInsideAndIsSilentOutside) {
