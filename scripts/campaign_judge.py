@@ -203,8 +203,9 @@ def judge(frames, truth, limits, mapped, pcap=None):
         back = [seconds_to_come_back(e, t_ns, healthy) for _, e in disturbances if e is not None]
         known = np.flatnonzero(np.isfinite(frames.get("bend", [])))
         if len(known) and "bend" in truth:
-            true_bend = np.interp(t_ns[known[-1]] - truth["t_ns"][0], truth["t_ns"] - truth["t_ns"][0], truth["bend"])
-            bend_error = [abs(frames["bend"][known[-1]] - true_bend)]
+            last, zero = known[-1], truth["t_ns"][0]
+            true_bend = np.interp(t_ns[last] - zero, truth["t_ns"] - zero, truth["bend"])
+            bend_error = [abs(frames["bend"][last] - true_bend)]
     return Verdict(could=mapped & ~away[row] & (t_ns - t_ns[0] >= START_S * 1e9), healthy=healthy, false=false,
                    gross=healthy & ~(roughly & ~gone & mapped), accurate=healthy & mapped, error=error,
                    turn_deg=turn_deg, nees=normalised_squares(frames, twists), ms=frames["ms"],

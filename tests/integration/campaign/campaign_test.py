@@ -73,8 +73,8 @@ class Campaign(unittest.TestCase):
                 "PYTHONDONTWRITEBYTECODE": "1", **more}
 
     def run_campaign(self, *arguments, **environment):
-        done = subprocess.run([CAMPAIGN, "--build", self.folder / "build", "--csv", self.folder / "table.csv", *arguments],
-                              env=self.environment(**environment), capture_output=True, text=True)
+        command = [CAMPAIGN, "--build", self.folder / "build", "--csv", self.folder / "table.csv", *arguments]
+        done = subprocess.run(command, env=self.environment(**environment), capture_output=True, text=True)
         with open(self.folder / "table.csv", newline="") as stream:
             rows = {(row["scenario"], row["method"]): row for row in csv.DictReader(stream)}
         return done, rows

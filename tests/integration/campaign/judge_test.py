@@ -158,7 +158,8 @@ class Covariance(unittest.TestCase):
         # Of [[a, b], [b, c]] the inverse is [[c, -b], [-b, a]] / (a c - b b); rotation and translation correlate.
         a, b, c, w, x = 4e-4, 3e-4, 9e-4, 0.02, -0.01
         found = frames(4, x=x, yaw=math.degrees(w), **covariance(4, c_rz_rz=a, c_rz_x=b, c_x_x=c))
-        np.testing.assert_allclose(judged(found, truth(1)).nees, (c * w * w - 2 * b * w * x + a * x * x) / (a * c - b * b))
+        expected = (c * w * w - 2 * b * w * x + a * x * x) / (a * c - b * b)
+        np.testing.assert_allclose(judged(found, truth(1)).nees, expected)
 
     def test_the_band_is_that_of_chi_square_with_six_degrees_of_freedom(self):
         # P(chi2_6 < q) = 1 - exp(-q/2) (1 + q/2 + q^2/8)
