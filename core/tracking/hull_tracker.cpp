@@ -52,6 +52,7 @@ struct HullTracker::Impl {
   Integrity integrity;
   HealthMemory memory;
   Pose last_T_H_W = Pose::Identity();
+  MotionGauge motion;
 
   // Buffers of one frame, kept for their capacity.
   FilteredScan filtered;
@@ -72,6 +73,7 @@ struct HullTracker::Impl {
         icp(icp_config(c.registration)),
         plane_icp({c.registration.max_iterations}),
         visibility(c.health.metric_range),
+        motion(bounding_box(map->cloud_H())),
         views(scan_filter.sensors().size()) {}
 
   TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
@@ -110,6 +112,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   result.health = verdict.state == State::tracking;
   result.faults = verdict.faults;
   result.reason = std::move(verdict.reason);
+  result.motion = motion.update(result.time, result.health, result.displacement, result.rpy, result.T_W_H);
   return result;
 }
 

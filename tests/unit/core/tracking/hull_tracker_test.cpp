@@ -77,6 +77,20 @@ TEST(HullTracker, FindsAMooredHullAndSaysSo) {
   }
 }
 
+TEST(HullTracker, TellsTheMotionOfAHealthyHullAlone) {
+  Track track;
+  const TrackResult first = track.step(&track.ship(), {.T_W_H = displaced({0, 0, -0.05})});
+  EXPECT_FALSE(first.health);
+  EXPECT_FALSE(first.motion.now);
+  const TrackResult result = track.settle(displaced({0.04, 0.0, -0.05}, {0.05, 0.0, 0.0}));
+  ASSERT_TRUE(result.health) << result.reason;
+  ASSERT_TRUE(result.motion.now);
+  EXPECT_NEAR(result.motion.now->draft, 0.05, 0.03);
+  EXPECT_NEAR(result.motion.now->surge, 0.04, 0.03);
+  EXPECT_NEAR(result.motion.now->heel, radians(0.05), radians(0.1));
+  EXPECT_FALSE(result.motion.rate) << "of half a second";
+}
+
 TEST(HullTracker, IsNeverHealthyOnAHullThatItDoesNotFind) {
   // Shifts beyond what the gate of 0.3 m can follow: along, across, both, up, down, turned.
   for (const auto& [t, yaw] :
