@@ -6,9 +6,9 @@ namespace {
 ShipMotion as_motion(const Eigen::Vector4d& v) { return {v[0], v[1], v[2], v[3]}; }
 
 /// Weight of a pose in the slope; u = -1 at the oldest, 1 at the newest. A swing of amplitude A and period P
-/// turns the plain slope over T by up to 6/pi A P / T^2, heave of 5 cm at 15 s the draft rate by 1.4 m/h. With
-/// weights that vanish at the ends together with their derivative it is 210/pi^3 A P^3 / T^4, 0.3 m/h, at the
-/// price of 1.5 times the noise.
+/// turns the plain slope over T by up to 6/pi A P / T^2, heave of 5 cm at 15 s the draft rate by 1.4 m/h.
+/// With weights that vanish at the ends together with their derivative it is 210/pi^3 A P^3 / T^4, 0.3 m/h,
+/// at the price of 1.5 times the noise.
 double weight(double u) {
   const double w = 1.0 - u * u;
   return w * w;

@@ -7,6 +7,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <mutex>
+#include <optional>
+
+#include "core/base/time.hpp"
+#include "core/tracking/motion_products.hpp"
 
 namespace hulltrack {
 
@@ -25,6 +29,14 @@ struct Spread {
   [[nodiscard]] double mean() const { return count > 0 ? sum / static_cast<double>(count) : 0.0; }
 };
 
+/// How the hull lay when it was last found healthy.
+struct HullFigures {
+  SteadyTime when;
+  MotionProducts motion;  // motion.now is known
+  double bend = 0.0;      // m, + sag
+  double sigma_bend = -1.0;
+};
+
 struct Figures {
   std::uint64_t frames = 0;
   std::uint64_t healthy_frames = 0;
@@ -40,6 +52,7 @@ struct Figures {
   std::uint64_t packets = 0;
   std::uint64_t packets_lost = 0;
   std::uint64_t packets_refused = 0;  // malformed or from a foreign sender
+  std::optional<HullFigures> hull;    // the newest, where all else are sums
 
   void add(const Figures& more) {
     frames += more.frames;
@@ -56,6 +69,9 @@ struct Figures {
     packets += more.packets;
     packets_lost += more.packets_lost;
     packets_refused += more.packets_refused;
+    if (more.hull) {
+      hull = more.hull;
+    }
   }
 };
 

@@ -157,6 +157,7 @@ void Service::report(SteadyTime now) {
   minute_.add(second);
   if (now - minute_began_ >= kSummaryPeriod) {
     log_.write(LogLevel::info, summary_line(registers, minute_, now - minute_began_));
+    log_.write(LogLevel::info, hull_line(minute_.hull, now));
     minute_ = {};
     minute_began_ = now;
   }

@@ -1,5 +1,7 @@
 #include "daemon/app/summary.hpp"
 
+#include <cmath>
+
 #include "core/base/text.hpp"
 
 namespace hulltrack {
@@ -35,6 +37,44 @@ std::string lidar_words(const WriteBlock& registers, const Figures& figures) {
   return format_text("loss %.1f %%%s", loss_percent(figures), silent ? ", LiDAR silent" : "");
 }
 
+constexpr double kHour = 3600.0;  // s
+constexpr double kMinute = 60.0;  // s
+
+/// ", growing 0.10 deg/h" of a lean that changes by `rate`, rad/s; empty while the rate is unknown.
+std::string lean_rate(double lean, const std::optional<double>& rate) {
+  if (!rate) {
+    return {};
+  }
+  return format_text(", %s %.2f deg/h", lean * *rate >= 0.0 ? "growing" : "easing",
+                     std::abs(degrees(*rate)) * kHour);
+}
+
+std::string draft_words(const ShipMotion& now, const std::optional<ShipMotion>& rate) {
+  std::string words = format_text("%.2f m %s", std::abs(now.draft), now.draft >= 0.0 ? "deeper" : "higher");
+  if (rate) {
+    words += format_text(", %s %.2f m/h", rate->draft >= 0.0 ? "sinking" : "rising",
+                         std::abs(rate->draft) * kHour);
+  }
+  return words;
+}
+
+std::string heel_words(const ShipMotion& now, const std::optional<ShipMotion>& rate) {
+  return format_text("heel %.2f deg, %s side down", std::abs(degrees(now.heel)),
+                     now.heel >= 0.0 ? "-Y" : "+Y") +
+         lean_rate(now.heel, rate ? std::optional(rate->heel) : std::nullopt);
+}
+
+std::string trim_words(const ShipMotion& now, const std::optional<ShipMotion>& rate, double length) {
+  return format_text("trim %.2f deg (%.2f m over %.0f m), %s end down", std::abs(degrees(now.trim)),
+                     std::abs(std::tan(now.trim)) * length, length, now.trim >= 0.0 ? "+X" : "-X") +
+         lean_rate(now.trim, rate ? std::optional(rate->trim) : std::nullopt);
+}
+
+std::string surge_words(const ShipMotion& now, const std::optional<ShipMotion>& rate) {
+  return format_text("surge %+.2f m", now.surge) +
+         (rate ? format_text(", %+.2f m/min", rate->surge * kMinute) : "");
+}
+
 }  // namespace
 
 std::string status_line(const WriteBlock& registers, const Figures& figures, Nanoseconds window) {
@@ -60,6 +100,25 @@ std::string summary_line(const WriteBlock& registers, const Figures& figures, Na
                       lidar_words(registers, figures).c_str(),
                       static_cast<unsigned long long>(figures.packets_refused));
   return line;
+}
+
+std::string hull_line(const std::optional<HullFigures>& hull, SteadyTime now) {
+  if (!hull || !hull->motion.now) {
+    return "hull: no healthy pose, so neither draft nor heel, trim and surge are known";
+  }
+  const MotionProducts& motion = hull->motion;
+  std::string line = "hull since its map";
+  if (const double age = to_seconds(now - hull->when); age >= 1.0) {
+    line += format_text(", as it lay %.0f s ago when health was last 1", age);
+  }
+  line += ": " + draft_words(*motion.now, motion.rate) + "; " + heel_words(*motion.now, motion.rate) + "; " +
+          trim_words(*motion.now, motion.rate, motion.mapped_length) + "; " +
+          surge_words(*motion.now, motion.rate);
+  if (hull->sigma_bend >= 0.0) {
+    line += format_text("; %s %.2f m (1 sigma %.2f m)", hull->bend >= 0.0 ? "sag" : "hog",
+                        std::abs(hull->bend), hull->sigma_bend);
+  }
+  return line + (motion.rate ? "" : "; rates not known yet");
 }
 
 }  // namespace hulltrack

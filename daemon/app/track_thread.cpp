@@ -63,6 +63,9 @@ void TrackThread::process(const Scan& scan) {
   if (report.track.metrics.valid) {
     figures.q1_m.add(report.track.metrics.q1);
   }
+  if (report.track.motion.now) {
+    figures.hull = {done, report.track.motion, report.track.bend, report.track.sigma_bend};
+  }
   exchange_.figures.add(figures);
   exchange_.frame.put({++sequence_, std::move(report.track), scan.last_received, done});
   exchange_.plc_bell.ring();

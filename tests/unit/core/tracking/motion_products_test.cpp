@@ -28,7 +28,8 @@ class Ship {
       return gauge_.update(time, false, Eigen::Vector3d::Constant(9.0), Eigen::Vector3d::Constant(1.0),
                            Pose(Eigen::Translation3d(5, 5, 5)));
     }
-    return gauge_.update(time, true, T_W_H * kReference - kReference, rpy_from_rotation(T_W_H.linear()), T_W_H);
+    return gauge_.update(time, true, T_W_H * kReference - kReference, rpy_from_rotation(T_W_H.linear()),
+                         T_W_H);
   }
   MotionProducts run(double seconds, bool health = true) {
     MotionProducts last;
@@ -65,7 +66,8 @@ TEST(MotionProducts, HeelIsPositiveWithTheSideAtSmallerYDown) {
   const MotionProducts products = Ship([&](double) { return T_W_H; }).step();
   EXPECT_LT((T_W_H * Eigen::Vector3d(10, 2, 5)).z(), (T_W_H * Eigen::Vector3d(10, 22, 5)).z());
   EXPECT_NEAR(products.now->heel, radians(2.0), 1e-12);
-  EXPECT_NEAR(products.now->draft, -12.0 * std::sin(radians(2.0)) + 5.0 * (1.0 - std::cos(radians(2.0))), 1e-12);
+  EXPECT_NEAR(products.now->draft, -12.0 * std::sin(radians(2.0)) + 5.0 * (1.0 - std::cos(radians(2.0))),
+              1e-12);
 }
 
 TEST(MotionProducts, SurgeIsTheReferencePointsWayAlongTheQuay) {
@@ -138,7 +140,8 @@ TEST(MotionProducts, WavesHardlyShowInTheRates) {
       return lying({0, 0, -kPerHour * t + kHeave * std::sin(2.0 * std::numbers::pi * t / period)}, {0, 0, 0});
     });
     ship.run(60.0);
-    const double bound = 1.25 * 210.0 / std::pow(std::numbers::pi, 3) * kHeave * std::pow(period, 3) / std::pow(60.0, 4);
+    const double bound =
+        1.25 * 210.0 / std::pow(std::numbers::pi, 3) * kHeave * std::pow(period, 3) / std::pow(60.0, 4);
     for (int i = 0; i < 150; ++i) {
       EXPECT_NEAR(ship.step().rate->draft, kPerHour, bound) << "period " << period;
     }

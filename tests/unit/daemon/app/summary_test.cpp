@@ -63,6 +63,69 @@ TEST(Summary, SixtySecondsAddUpToAMinute) {
   EXPECT_THAT(line, HasSubstr("45240 packets"));
 }
 
+const SteadyTime kNow{seconds(1000)};
+
+HullFigures loading() {
+  HullFigures hull;
+  hull.when = kNow - std::chrono::milliseconds(200);
+  hull.motion.now = ShipMotion{1.324, radians(0.52), radians(-0.30), 0.05};
+  hull.motion.rate = ShipMotion{1.07 / 3600, radians(-0.10) / 3600, radians(-0.02) / 3600, -0.25 / 60};
+  hull.motion.mapped_length = 120.0;
+  return hull;
+}
+
+TEST(HullLine, SaysWhichSideAndEndIsDownAndWhetherThatGrows) {
+  EXPECT_EQ(
+      hull_line(loading(), kNow),
+      "hull since its map: 1.32 m deeper, sinking 1.07 m/h; heel 0.52 deg, -Y side down, easing 0.10 deg/h; "
+      "trim 0.30 deg (0.63 m over 120 m), -X end down, growing 0.02 deg/h; surge +0.05 m, -0.25 m/min");
+}
+
+TEST(HullLine, NamesTheOppositesToo) {
+  HullFigures hull = loading();
+  hull.motion.now = ShipMotion{-0.4, radians(-0.5), radians(0.3), -0.05};
+  hull.motion.rate->draft = -0.5 / 3600;
+  const std::string line = hull_line(hull, kNow);
+  EXPECT_THAT(line, HasSubstr("0.40 m higher, rising 0.50 m/h"));
+  EXPECT_THAT(line, HasSubstr("heel 0.50 deg, +Y side down, growing"));
+  EXPECT_THAT(line, HasSubstr("+X end down, easing"));
+}
+
+TEST(HullLine, WhatIsUnknownIsSaid) {
+  EXPECT_THAT(hull_line(std::nullopt, kNow), HasSubstr("no healthy pose"));
+  HullFigures hull = loading();
+  hull.motion.rate.reset();
+  const std::string line = hull_line(hull, kNow);
+  EXPECT_THAT(line, HasSubstr("deeper; heel 0.52 deg, -Y side down; trim"));
+  EXPECT_THAT(line, HasSubstr("surge +0.05 m; rates not known yet"));
+}
+
+TEST(HullLine, BendIsThereOnceItIsKnown) {
+  HullFigures hull = loading();
+  EXPECT_EQ(hull_line(hull, kNow).find("sag"), std::string::npos);
+  hull.bend = 0.08;
+  hull.sigma_bend = 0.02;
+  EXPECT_THAT(hull_line(hull, kNow), HasSubstr("; sag 0.08 m (1 sigma 0.02 m)"));
+  hull.bend = -0.08;
+  EXPECT_THAT(hull_line(hull, kNow), HasSubstr("; hog 0.08 m"));
+}
+
+TEST(HullLine, AnOldPoseTellsItsAge) {
+  EXPECT_THAT(hull_line(loading(), kNow + seconds(40)),
+              HasSubstr("as it lay 40 s ago when health was last 1"));
+}
+
+TEST(Figures, TheNewestHullOfAWindowIsKept) {
+  Figures minute;
+  Figures second = one_good_second();
+  second.hull = loading();
+  minute.add(second);
+  second.hull->when = kNow;
+  minute.add(second);
+  minute.add(one_good_second());  // no healthy pose in it
+  EXPECT_EQ(minute.hull->when, kNow);
+}
+
 TEST(FigureBoard, AWindowStartsEmptyAfterItWasTaken) {
   FigureBoard board;
   board.add(one_good_second());
