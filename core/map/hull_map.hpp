@@ -9,6 +9,7 @@
 
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/point_blocks.hpp"
+#include "core/map/occupancy_grid.hpp"
 #include "core/map/plane_map.hpp"
 #include "core/map/surfel.hpp"
 #include "core/search/kdtree.hpp"
@@ -34,6 +35,8 @@ class HullMap {
 
   /// The flat parts, for registration.
   [[nodiscard]] const PlaneMap& planes() const { return planes_; }
+  /// For searching the whole berth.
+  [[nodiscard]] const OccupancyGrid& occupancy() const { return occupancy_; }
 
  private:
   Cloud cloud_H_;
@@ -42,6 +45,7 @@ class HullMap {
   std::vector<Surfel> surfels_;
   PointBlocks occluders_H_;
   PlaneMap planes_;
+  OccupancyGrid occupancy_;
 };
 
 }  // namespace hulltrack

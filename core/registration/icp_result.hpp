@@ -33,7 +33,7 @@ struct IcpResult {
   double last_translation = 0.0;  // of the last increment, m
   double last_rotation = 0.0;     // of the last increment, rad
 
-  int free_directions = 0;        // of the six that the pairs do not hold; not moved along
+  int free_directions = 0;  // of the six that the pairs do not hold; not moved along
 
   /// J^T W J of the matched pairs against a twist [rotation; translation] of the source about `centre`, in
   /// the target's frame: rad, m; weights are 1 where no kernel says otherwise.

@@ -5,26 +5,39 @@
 namespace hulltrack {
 namespace {
 
-Twist unscaled(Twist twist) {
-  twist.head<3>() /= PlaneSystem::kLever;
-  return twist;
+/// x = H^-1 g along the directions that are held; returns how many are not.
+template <int N>
+int solve_held(const Eigen::Matrix<double, N, N>& H, const Eigen::Matrix<double, N, 1>& g,
+               Eigen::Matrix<double, N, 1>& x) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(H);
+  int free = 0;
+  for (int i = 0; i < N; ++i) {
+    const double worth = eigen.eigenvalues()[i];
+    if (!(worth >= PlaneSystem::kFewestPairs)) {
+      ++free;
+      continue;
+    }
+    const Eigen::Matrix<double, N, 1> direction = eigen.eigenvectors().col(i);
+    x += direction.dot(g) / worth * direction;
+  }
+  return free;
 }
 
 }  // namespace
 
 PlaneSystem::Solution PlaneSystem::solve() const {
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(H_.selfadjointView<Eigen::Upper>()));
   Solution solution{Twist::Zero(), 0};
-  for (int i = 0; i < 6; ++i) {
-    const double worth = eigen.eigenvalues()[i];
-    if (!(worth >= kFewestPairs)) {
-      ++solution.free;
-      continue;
-    }
-    const Twist direction = eigen.eigenvectors().col(i);
-    solution.twist += direction.dot(g_) / worth * direction;
-  }
-  solution.twist = unscaled(solution.twist);
+  solution.free = solve_held<6>(H_.selfadjointView<Eigen::Upper>(), g_, solution.twist);
+  solution.twist.head<3>() /= kLever;
+  return solution;
+}
+
+PlaneSystem::Solution PlaneSystem::solve_shift() const {
+  Solution solution{Twist::Zero(), 0};
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  const Eigen::Matrix3d H = H_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Upper>();
+  solution.free = solve_held<3>(H, g_.tail<3>(), shift);
+  solution.twist.tail<3>() = shift;
   return solution;
 }
 

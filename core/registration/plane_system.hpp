@@ -47,10 +47,12 @@ class PlaneSystem {
   }
 
   struct Solution {
-    Twist twist;    // about centre(), rad and m
-    int free = 0;   // directions of the six that were not moved along
+    Twist twist;   // about centre(), rad and m
+    int free = 0;  // directions of the six that were not moved along
   };
   [[nodiscard]] Solution solve() const;
+  /// The same without a rotation; `free` counts the directions of three.
+  [[nodiscard]] Solution solve_shift() const;
 
   /// J^T W J against [rotation; translation] about centre(): rad, m.
   [[nodiscard]] Matrix6 normal_matrix() const;

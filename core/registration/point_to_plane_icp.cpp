@@ -12,13 +12,15 @@ namespace {
 // return's range: narrower costs efficiency, wider lets in what lies a few centimetres off.
 constexpr std::array<double, 4> kKernels = {0.20, 0.10, 0.05, 0.03};
 
-// Gates of an approach and how often each is searched with, m. A gate reaches planes behind the right one
-// as long as there are any, so it closes in steps of half.
+// Gates of an approach and how often each is searched with, m. At first the pairs may shift the hull but not
+// turn it: many are with wrong planes until the gate closes.
 struct Stage {
   float gate;
   int rounds;
+  bool turns;
 };
-constexpr std::array<Stage, 4> kApproach = {{{3.0F, 4}, {1.5F, 3}, {0.8F, 3}, {0.4F, 3}}};
+constexpr std::array<Stage, 4> kApproach = {
+    {{1.2F, 2, false}, {0.8F, 2, false}, {0.8F, 2, true}, {0.4F, 2, true}}};
 
 constexpr int kInnerSteps = 2;
 
@@ -49,7 +51,8 @@ PlaneSystem PointToPlaneIcp::system_of(std::span<const Correspondence> pairs, co
   for (const Correspondence& pair : pairs) {
     sum += pair.source;
   }
-  PlaneSystem system(T_step * Eigen::Vector3d(sum / std::max(1.0, static_cast<double>(pairs.size()))), kernel);
+  PlaneSystem system(T_step * Eigen::Vector3d(sum / std::max(1.0, static_cast<double>(pairs.size()))),
+                     kernel);
   for (const Correspondence& pair : pairs) {
     const PlaneMap::Plane& plane = map.planes()[pair.index];
     const Eigen::Vector3d p = T_step * pair.source;
@@ -130,7 +133,7 @@ Pose PointToPlaneIcp::approach(std::span<const Point> source, const PlaneMap& ma
           system.add(p, plane.normal_H.cast<double>(), on_plane(p, plane, kBesides).residual);
         }
       }
-      const PlaneSystem::Solution solution = system.solve();
+      const PlaneSystem::Solution solution = stage.turns ? system.solve() : system.solve_shift();
       T = pose_from_twist_about(system.centre(), solution.twist) * T;
       if (!T.matrix().allFinite()) {
         return T_init;

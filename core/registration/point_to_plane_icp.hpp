@@ -20,15 +20,15 @@
 namespace hulltrack {
 
 struct PlaneIcpConfig {
-  int max_iterations = 50;                // rounds, >= 1
-  double translation_epsilon = 0.0002;    // m, of the matched points' centroid
+  int max_iterations = 50;              // rounds, >= 1
+  double translation_epsilon = 0.0002;  // m, of the matched points' centroid
   double rotation_epsilon = radians(0.002);
 };
 
 /// How well a pose explains a cloud, from the nearest planes alone.
 struct PlaneScore {
-  double worth = 0.0;         // sum of k^2 / (k^2 + r^2) over points on a plane, k = PointToPlaneIcp::kScoreKernel
-  std::uint32_t points = 0;   // points looked at
+  double worth = 0.0;  // sum of k^2 / (k^2 + r^2) over points on a plane, k = PointToPlaneIcp::kScoreKernel
+  std::uint32_t points = 0;  // points looked at
 };
 
 class PointToPlaneIcp {
@@ -44,7 +44,8 @@ class PointToPlaneIcp {
   /// Fine alignment: from a start some 0.3 m or less off.
   [[nodiscard]] IcpResult align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init);
 
-  /// Coarse alignment: from a start up to about 2 m off to within the reach of align(), with few points.
+  /// Coarse alignment: from a start up to 0.5 m and 1 deg off to within the reach of align(), with few
+  /// points.
   [[nodiscard]] Pose approach(std::span<const Point> source, const PlaneMap& map, const Pose& T_init);
 
   [[nodiscard]] PlaneScore score(std::span<const Point> source, const PlaneMap& map, const Pose& T);

@@ -9,9 +9,11 @@
 namespace hulltrack {
 namespace {
 
-// Two healthy poses are each off by less than 10 cm and 0.3 deg; usually by a third of it. A hull that obeys
-// max_speed can show this much beyond max_speed * dt before a jump is no longer explained by errors.
-constexpr double kJumpNoise = 0.10;  // m: 3 sigma of the difference of two poses of 2.4 cm
+// Two poses are each off by less than 5 cm. A hull that moves no faster than kFastest can show this much
+// beyond kFastest * dt before a jump is no longer explained by errors.
+constexpr double kJumpNoise = 0.10;  // m
+// Nothing moves a moored hull faster: twice the fastest jerk of a passing ship, a metre within some seconds.
+constexpr double kFastest = 0.6;  // m/s
 const double kTurnNoise = radians(0.3);
 // A moored ship rolls by a degree in a quarter of 8 s.
 const double kTurnRate = radians(1.0);  // 1/s
@@ -78,19 +80,29 @@ void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& fin
   }
 }
 
-void check_jump(const HealthLimits& limits, const HealthMemory& memory, const Evidence& e,
-                Findings& findings) {
-  if (!memory.last) {
+/// Does the pose follow from the one before? Ends `unique` when the hull was out of sight for too long.
+void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
+  if (!memory.followed) {
     return;
   }
-  const double dt = std::max(0.0, to_seconds(e.time - memory.last->time));
-  const double jump = (e.displacement - memory.last->displacement).norm();
-  const double reach = limits.max_speed * dt + kJumpNoise;
+  const double dt = std::max(0.0, to_seconds(e.time - memory.followed->time));
+  const double reach = kFastest * dt + kJumpNoise;
+  if (reach > kUnseen) {
+    memory.unique = false;
+    memory.followed.reset();
+    memory.motion = MotionRecord{};
+    return;
+  }
+  const double jump = (e.displacement - memory.followed->displacement).norm();
+  if (!memory.unique && jump > reach) {  // the search found a better place
+    memory.motion = MotionRecord{};
+    return;
+  }
   if (jump > reach) {
     findings.add(State::degraded, fault::implausible,
                  format_text("pose jumped by %.2f m in %.1f s, at most %.2f m is possible", jump, dt, reach));
   }
-  const double turn = rotation_angle(memory.last->rotation.transpose() * e.rotation);
+  const double turn = rotation_angle(memory.followed->rotation.transpose() * e.rotation);
   if (turn > kTurnRate * dt + kTurnNoise) {
     findings.add(State::degraded, fault::implausible,
                  format_text("pose turned by %.2f deg in %.1f s", degrees(turn), dt));
@@ -107,7 +119,7 @@ void check_speed(const HealthLimits& limits, const HealthMemory& memory, Finding
     findings.add(State::degraded, fault::implausible,
                  format_text("the hull moves at %.2f m/s, max_speed is %.2f m/s", speed, limits.max_speed));
   }
-  const double turning = std::abs(motion->yaw_rate);
+  const double turning = std::abs(motion->rpy_rate.z());
   if ((turning - kYawRateNoise) * limits.half_length > limits.max_speed) {
     findings.add(State::degraded, fault::implausible,
                  format_text("the hull turns at %.2f deg/s and its ends at %.2f m/s, max_speed is %.2f m/s",
@@ -115,20 +127,21 @@ void check_speed(const HealthLimits& limits, const HealthMemory& memory, Finding
   }
 }
 
-void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
-  if (memory.acquired && (e.integrity.faults & fault::contradicted) != 0) {
-    memory.seen_elsewhere += std::clamp(e.time - memory.last_judged, Nanoseconds{0}, JointHistory::kMaxGap);
-    if (memory.seen_elsewhere > kSeenElsewhere) {
-      memory.ambiguous = true;
-      memory.acquired = false;
-    }
+/// Ends the search when all of the berth was searched and one place is left.
+void check_uniqueness(HealthMemory& memory, const SearchEvidence& search, Findings& findings) {
+  if (memory.unique) {
+    return;
   }
-  memory.last_judged = e.time;
-  if (memory.ambiguous) {
+  if (search.tried < search.starts) {
+    findings.add(State::degraded, 0,
+                 format_text("searching the berth: %zu of %zu places tried", search.tried, search.starts));
+  } else if (search.rival) {
+    const Eigen::Vector3d& d = *search.rival;
     findings.add(
         State::lost, fault::ambiguous,
-        format_text("the hull was elsewhere for %.0f s and may lie at another hatch: confirm by re-acquire",
-                    to_seconds(kSeenElsewhere)));
+        format_text("the hull may as well lie at displacement %.1f, %.1f, %.1f m", d.x(), d.y(), d.z()));
+  } else if (findings.state == State::tracking) {
+    memory.unique = true;
   }
 }
 
@@ -146,15 +159,16 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
     check_distances(limits, e, findings);
     check_integrity(e, findings);
     check_continuity(memory, e, findings);
-    check_envelope(limits, e, findings);
-    check_jump(limits, memory, e, findings);
     if (findings.state != State::lost && (findings.faults & fault::implausible) == 0) {
-      memory.motion.add(e.time, e.displacement, rpy_from_rotation(e.rotation).z());
+      memory.followed = HealthMemory::FollowedPose{e.time, e.displacement, e.rotation};
+      memory.motion.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
     }
+    check_envelope(limits, e, findings);
     check_speed(limits, memory, findings);
   }
 
   memory.good_frames = findings.state == State::tracking ? memory.good_frames + 1 : 0;
+  check_uniqueness(memory, e.search, findings);
   if (findings.state == State::tracking && memory.state != State::tracking &&
       memory.good_frames < limits.health.recover_frames) {
     findings.add(State::degraded, 0,
@@ -162,11 +176,7 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
                              counted(static_cast<std::uint64_t>(memory.good_frames), "good frame").c_str(),
                              limits.health.recover_frames));
   }
-  if (findings.state == State::tracking) {
-    memory.acquired = true;
-    memory.seen_elsewhere = Nanoseconds{0};
-    memory.last = HealthMemory::HealthyPose{e.time, e.displacement, e.rotation};
-  } else if (!memory.acquired) {
+  if (!memory.unique) {
     findings.state = State::acquiring;
   }
   memory.state = findings.state;

@@ -7,10 +7,11 @@
 //   tracking   every check passed, now and (unless tracking already) in recover_frames frames in a row
 //   degraded   a pose, but: Q1 above q1_healthy, not converged, not constrained, implausible, or recovering
 //   lost       no pose to trust: none found, too few matches, Q1 above q1_lost, contradicted by the scan
-//   acquiring  instead of degraded and lost until health is first 1, and again after a re-acquire edge
-// A hull that the scan saw elsewhere for kSeenElsewhere may come to rest where its next hatch looks like the
-// one in the map. No figure of a frame can tell: from then on it is ambiguous and acquiring until a
-// re-acquire edge. Metres, radians. The pose's age is the publisher's business.
+//   acquiring  instead of degraded and lost while the hull has to be searched for
+// A scan may look the same one hatch farther along the quay, so a pose is believed only if it follows from an
+// earlier one without a gap in which the hull could have moved by kUnseen, or if the whole berth was searched
+// since and no other place explains the scan as well. Metres, radians. The pose's age is the publisher's
+// business.
 #pragma once
 
 #include <optional>
@@ -24,6 +25,13 @@
 #include "core/tracking/tracker_config.hpp"
 
 namespace hulltrack {
+
+/// What the search of the berth says; of interest while a pose does not follow from an earlier one.
+struct SearchEvidence {
+  std::size_t tried = 0;  // starts since the search began
+  std::size_t starts = 0;
+  std::optional<Eigen::Vector3d> rival;  // where the hull might lie as well: displacement, m
+};
 
 /// Everything that one frame says for or against itself.
 struct Evidence {
@@ -40,25 +48,24 @@ struct Evidence {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // of the reference point, m
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // of T_W_H
   IntegrityFinding integrity;
+  SearchEvidence search;
 };
 
-/// At 0.3 m/s, a usual max_speed, a hull moves 6 m in this time: less than any ship's hatch pitch.
-inline constexpr Nanoseconds kSeenElsewhere = std::chrono::seconds(20);
+/// A hull that may have moved by more than this unseen is searched for: alignments from starts this far off
+/// still end at the right place, those from several metres on at places of their own.
+inline constexpr double kUnseen = 1.0;  // m
 
 struct HealthMemory {
-  struct HealthyPose {
+  struct FollowedPose {
     MeasurementTime time;
     Eigen::Vector3d displacement;
     Eigen::Matrix3d rotation;
   };
   State state = State::starting;
-  bool acquired = false;            // health has been 1 since the start or the last re-acquire edge
-  int good_frames = 0;              // in a row
-  Nanoseconds seen_elsewhere{0};    // frames that contradicted the pose since the last healthy one, together
-  MeasurementTime last_judged{};    // the latest frame with a pose
-  bool ambiguous = false;           // seen elsewhere for too long: only a re-acquire edge helps
-  std::optional<HealthyPose> last;  // the last pose with health 1
-  MotionRecord motion;              // of the poses that the scan did not contradict
+  bool unique = false;                   // the pose follows from one that no other place rivalled
+  int good_frames = 0;                   // in a row
+  std::optional<FollowedPose> followed;  // the last pose that the scan did not contradict
+  MotionRecord motion;                   // of the followed poses
 };
 
 struct HealthVerdict {

@@ -7,21 +7,15 @@
 #include <limits>
 
 #include "core/base/text.hpp"
-#include "core/filter/voxel_filter.hpp"
 #include "core/geometry/box.hpp"
-#include "core/registration/point_to_plane_icp.hpp"
-#include "core/registration/point_to_point_icp.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
+#include "core/tracking/pose_finder.hpp"
 #include "core/tracking/scan_view.hpp"
 #include "core/tracking/visibility.hpp"
 
 namespace hulltrack {
 namespace {
-
-IcpConfig icp_config(const RegistrationConfig& c) {
-  return {c.max_correspondence_distance, c.max_iterations, c.translation_epsilon, c.rotation_epsilon};
-}
 
 /// 1-sigma along the largest principal axis of the pose's error as the scan sees it: how uncertain the
 /// plane step is, and the step itself, which was not taken.
@@ -45,18 +39,14 @@ struct HullTracker::Impl {
   HealthLimits limits;
   std::shared_ptr<const HullMap> map;
   ScanFilter scan_filter;
-  VoxelFilter voxel_filter;
-  PointToPointIcp icp;
-  PointToPlaneIcp plane_icp;
+  PoseFinder finder;
   Visibility visibility;
   Integrity integrity;
   HealthMemory memory;
-  Pose last_T_H_W = Pose::Identity();
   MotionGauge motion;
 
   // Buffers of one frame, kept for their capacity.
   FilteredScan filtered;
-  Cloud thinned_W;
   std::vector<ScanView> views;
   std::vector<VisiblePoint> visible;
   Cloud measured_W;  // the metrics' map points, and what is nearest to each
@@ -69,9 +59,7 @@ struct HullTracker::Impl {
         limits(health_limits(c, half_length(m.get()))),
         map(std::move(m)),
         scan_filter(machine, std::move(sensors), c.hull.region),
-        voxel_filter(c.registration.voxel_size),
-        icp(icp_config(c.registration)),
-        plane_icp({c.registration.max_iterations}),
+        finder(c, *map),
         visibility(c.health.metric_range),
         motion(bounding_box(map->cloud_H())),
         views(scan_filter.sensors().size()) {}
@@ -80,7 +68,9 @@ struct HullTracker::Impl {
   void register_scan(Evidence& evidence, TrackResult& result);
   void look(const Joints& joints_mid);
   DistanceMetrics measure(const Pose& T_W_H, const KdTree& scan_W);
-  void examine(const Joints& joints_mid, Evidence& evidence, TrackResult& result);
+  IntegrityReport inspect(const Pose& T_W_H);
+  void examine(Evidence& evidence, TrackResult& result);
+  void search(Evidence& evidence, const TrackResult& result);
 };
 
 TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joints,
@@ -102,12 +92,15 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   if (evidence.bracketed && !inputs.hold && (inputs.plc_faults & fault::plc_stale) == 0) {
     scan_filter.run(scan, joints, filtered);
     register_scan(evidence, result);
+    look(mid.joints);
     if (result.registered) {
-      examine(mid.joints, evidence, result);
+      examine(evidence, result);
     }
+    search(evidence, result);
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
   memory = std::move(next);
+  finder.judged(memory, inputs.reacquire, result.time);
   result.state = verdict.state;
   result.health = verdict.state == State::tracking;
   result.faults = verdict.faults;
@@ -117,13 +110,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
 }
 
 void HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
-  voxel_filter.filter(filtered.hull_W, thinned_W);
-  // Each frame starts from the PLC alone, independent of the past (Guo 2025, 2.2).
-  const IcpResult icp_result =
-      config.registration.method == RegistrationMethod::automatic
-          ? plane_icp.align(thinned_W, map->planes(), memory.last ? last_T_H_W : Pose::Identity())
-          : icp.align(thinned_W, map->tree(), Pose::Identity());
-  last_T_H_W = icp_result.T_target_source;
+  const IcpResult icp_result = finder.find(filtered.hull_W, result.time, memory);
   const bool found = icp_result.stop == IcpStop::converged || icp_result.stop == IcpStop::iteration_limit;
   result.registered = found;
   result.converged = icp_result.converged;
@@ -133,20 +120,17 @@ void HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
   evidence.converged = icp_result.converged;
   evidence.matched = icp_result.matched;
   evidence.trouble =
-      format_text("registration of %zu points: %s", thinned_W.size(), describe(icp_result.stop));
+      format_text("registration of %zu points: %s", finder.thinned_W().size(), describe(icp_result.stop));
   if (found) {
     result.T_W_H = icp_result.T_target_source.inverse();
   }
 }
 
-void HullTracker::Impl::examine(const Joints& joints_mid, Evidence& evidence, TrackResult& result) {
+void HullTracker::Impl::examine(Evidence& evidence, TrackResult& result) {
   const Eigen::Vector3d& reference_H = config.hull.reference_point;
-  const Eigen::Vector3d reference_W = result.T_W_H * reference_H;
-  result.displacement = reference_W - reference_H;
+  result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
-  look(joints_mid);
-  visibility.run(*map, map->subset_H(), result.T_W_H, views, scan_filter.sensors(), visible);
-  const IntegrityReport report = integrity.run(*map, visible, result.T_W_H, views, reference_W);
+  const IntegrityReport report = inspect(result.T_W_H);
   result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
 
   if (report.step.solved) {
@@ -157,6 +141,29 @@ void HullTracker::Impl::examine(const Joints& joints_mid, Evidence& evidence, Tr
   evidence.displacement = result.displacement;
   evidence.rotation = result.T_W_H.linear();
   evidence.integrity = judge_integrity(report);
+}
+
+/// The scan against the map at T_W_H.
+IntegrityReport HullTracker::Impl::inspect(const Pose& T_W_H) {
+  visibility.run(*map, map->subset_H(), T_W_H, views, scan_filter.sensors(), visible);
+  return integrity.run(*map, visible, T_W_H, views, T_W_H * config.hull.reference_point);
+}
+
+/// Does another place explain the scan as well? One is examined a frame.
+void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result) {
+  const auto contradicted = [](const IntegrityFinding& finding) {
+    return (finding.faults & fault::contradicted) != 0;
+  };
+  const Pose T_H_W = result.T_W_H.inverse();
+  if (result.registered) {
+    const bool wrong = contradicted(evidence.integrity);
+    finder.settle(T_H_W, T_H_W, wrong);
+    if (const auto rival = wrong ? std::nullopt : finder.rival(T_H_W)) {
+      finder.settle(rival->start, rival->T_H_W,
+                    contradicted(judge_integrity(inspect(rival->T_H_W.inverse()))));
+    }
+  }
+  evidence.search = finder.evidence(T_H_W);
 }
 
 void HullTracker::Impl::look(const Joints& joints_mid) {

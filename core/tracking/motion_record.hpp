@@ -1,7 +1,6 @@
 // How fast is the hull moving? The slope of its latest poses, so that noise does not trip the limit.
 //
-// Positions of the reference point in W, m, and yaw about W's vertical axis, rad; a plain value of bounded
-// size. Roll and pitch are left out: waves move a moored ship about these axes. Pure.
+// Positions of the reference point in W, m, and roll, pitch, yaw, rad; a plain value of bounded size. Pure.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,16 +20,16 @@ class MotionRecord {
   static constexpr Nanoseconds kShortest = std::chrono::milliseconds(300);
 
   struct Motion {
-    Eigen::Vector3d velocity;  // m/s
-    double yaw_rate;           // rad/s
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s
+    Eigen::Vector3d rpy_rate = Eigen::Vector3d::Zero();  // rad/s
   };
 
-  /// Times must not run backwards (an earlier pose restarts the record). Yaw stays far from +-180 deg.
-  void add(MeasurementTime time, const Eigen::Vector3d& position, double yaw) {
+  /// Times must not run backwards (an earlier pose restarts the record). Angles stay far from +-180 deg.
+  void add(MeasurementTime time, const Eigen::Vector3d& position, const Eigen::Vector3d& rpy) {
     if (!poses_.empty() && time <= poses_.back().time) {
       poses_.clear();
     }
-    poses_.push_back({time, {position.x(), position.y(), position.z(), yaw}});
+    poses_.push_back({time, (Vector6() << position, rpy).finished()});
     while (time - poses_.front().time > kWindow) {
       poses_.pop_front();
     }
@@ -46,19 +45,20 @@ class MotionRecord {
       mean_t += since_first(e) / static_cast<double>(poses_.size());
     }
     double tt = 0.0;
-    Eigen::Vector4d tp = Eigen::Vector4d::Zero();
+    Vector6 tp = Vector6::Zero();
     for (const Entry& e : poses_) {
       const double t = since_first(e) - mean_t;
       tt += t * t;
       tp += t * e.pose;
     }
-    return Motion{tp.head<3>() / tt, tp[3] / tt};
+    return Motion{tp.head<3>() / tt, tp.tail<3>() / tt};
   }
 
  private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
   struct Entry {
     MeasurementTime time;
-    Eigen::Vector4d pose;  // position, yaw
+    Vector6 pose;  // position, roll, pitch, yaw
   };
   [[nodiscard]] double since_first(const Entry& e) const { return to_seconds(e.time - poses_.front().time); }
 

@@ -1,0 +1,185 @@
+#include "core/tracking/pose_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hulltrack {
+namespace {
+
+// Points of a scan that approaches and scores use: at 500 the share that a pose explains has a sigma of 2 %.
+constexpr std::size_t kFew = 500;
+// A scan with fewer points than this on and around the hull is none to search with.
+constexpr std::size_t kFewestForSearch = 100;
+// All starts are aligned in the time that health needs to return anyway.
+constexpr std::size_t kStartsAFrame = 4;
+// A place that explains this share of what the pose explains is examined as closely as the pose itself. Slid
+// along the quay a ship keeps nine tenths of its points on decks and sides, so nearly all that matters.
+constexpr double kRivals = 0.85;
+// A challenger explains this much more: five sigma of the difference of two shares of the same points.
+constexpr double kClearlyBetter = 1.05;
+// Poses nearer than this are what one alignment or another makes of the same place.
+constexpr double kOtherPlace = 1.0;  // m
+// Searched through without a trustworthy pose: the hull has moved on meanwhile, begin again.
+constexpr int kFramesUntilSearchedAgain = 10;
+// As fast as an unseen hull is looked for, and as far. m/s, m
+constexpr double kFastestUnseen = 0.6;
+constexpr double kFarthestUnseen = 60.0;
+
+Pose hull_pose(const Eigen::Vector3d& reference_H, const Eigen::Vector3d& displacement,
+               const Eigen::Matrix3d& R) {
+  Pose T_W_H = Pose::Identity();
+  T_W_H.linear() = R;
+  T_W_H.translation() = reference_H + displacement - R * reference_H;
+  return T_W_H;
+}
+
+}  // namespace
+
+PoseFinder::PoseFinder(const TrackerConfig& config, const HullMap& map)
+    : config_(config),
+      map_(&map),
+      voxel_filter_(config.registration.voxel_size),
+      point_icp_({config.registration.max_correspondence_distance, config.registration.max_iterations,
+                  config.registration.translation_epsilon, config.registration.rotation_epsilon}),
+      plane_icp_({.max_iterations = config.registration.max_iterations}),
+      search_(config.hull.reference_point, map) {}
+
+void PoseFinder::thin(const Cloud& hull_W) {
+  voxel_filter_.filter(hull_W, thinned_W_);
+  few_W_.clear();
+  const std::size_t count = std::min(kFew, thinned_W_.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    few_W_.push_back(thinned_W_[i * thinned_W_.size() / count]);
+  }
+}
+
+IcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory) {
+  thin(hull_W);
+  if (few_W_.size() < kFewestForSearch) {
+    search_is_stale_ = true;
+  } else if (!memory.unique) {
+    if (search_is_stale_) {
+      begin_search(time);
+    }
+    search_.advance(few_W_, kStartsAFrame, plane_icp_);
+    frames_searched_ += search_.complete() ? 1 : 0;
+  }
+  // The published method: each frame from the PLC alone (Guo 2025, 2.2).
+  return config_.registration.method == RegistrationMethod::point_to_point
+             ? point_icp_.align(thinned_W_, map_->tree(), Pose::Identity())
+             : plane_icp_.align(thinned_W_, map_->planes(), best_start(time, memory));
+}
+
+Pose PoseFinder::followed(MeasurementTime time, const HealthMemory& memory) const {
+  const HealthMemory::FollowedPose& last = *memory.followed;
+  const MotionRecord::Motion motion = memory.motion.motion().value_or(MotionRecord::Motion{});
+  const double dt = std::max(0.0, to_seconds(time - last.time));
+  const Eigen::Vector3d rpy = rpy_from_rotation(last.rotation) + dt * motion.rpy_rate;
+  return hull_pose(config_.hull.reference_point, last.displacement + dt * motion.velocity,
+                   rotation_from_rpy(rpy))
+      .inverse();
+}
+
+Pose PoseFinder::best_start(MeasurementTime time, const HealthMemory& memory) {
+  Pose best = Pose::Identity();
+  double best_score = -1.0;
+  const auto offer = [&](const Pose& T_H_W, double margin) {
+    const double score = search_.score(few_W_, T_H_W, plane_icp_);
+    if (score > margin * best_score) {
+      best = T_H_W;
+      best_score = score;
+    }
+  };
+  if (memory.followed) {
+    offer(followed(time, memory), 1.0);
+    offer(hull_pose(config_.hull.reference_point, memory.followed->displacement, memory.followed->rotation)
+              .inverse(),
+          1.0);
+  }
+  offer(Pose::Identity(), 1.0);
+  if (challenger_) {
+    offer(*challenger_, kClearlyBetter);
+  }
+  if (!memory.unique) {
+    for (const HullSearch::Place& place : search_.places()) {
+      if (!place.contradicted) {
+        offer(place.T_H_W, 1.0);
+      }
+    }
+  }
+  return best;
+}
+
+std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
+  if (few_W_.size() < kFewestForSearch) {
+    return std::nullopt;
+  }
+  if (unique_) {
+    challenger_ = search_.challenge(few_W_, T_H_W, kClearlyBetter, plane_icp_);
+    return std::nullopt;
+  }
+  const double least = kRivals * search_.score(few_W_, T_H_W, plane_icp_);
+  for (const HullSearch::Place& place : search_.places()) {
+    if (place.score < least) {
+      break;
+    }
+    if (!place.contradicted && !place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
+      const Pose start = place.T_H_W;
+      return Rival{start, plane_icp_.align(thinned_W_, map_->planes(), start).T_target_source};
+    }
+  }
+  return std::nullopt;
+}
+
+void PoseFinder::settle(const Pose& start, const Pose& T_H_W, bool contradicted) {
+  if (!unique_) {
+    search_.settle(start, T_H_W, contradicted);
+  }
+}
+
+SearchEvidence PoseFinder::evidence(const Pose& T_H_W) const {
+  SearchEvidence evidence{search_.tried(), search_.starts(), std::nullopt};
+  if (search_is_stale_) {
+    evidence = {0, 1, std::nullopt};
+  }
+  const Eigen::Vector3d& reference = config_.hull.reference_point;
+  for (const HullSearch::Place& place : search_.places()) {
+    if (place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
+      evidence.rival = place.T_H_W.inverse() * reference - reference;
+      break;
+    }
+  }
+  return evidence;
+}
+
+void PoseFinder::judged(const HealthMemory& memory, bool reacquire, MeasurementTime time) {
+  if (reacquire) {
+    last_seen_.reset();
+  }
+  if (memory.followed && memory.unique) {
+    last_seen_ = LastSeen{time, memory.followed->displacement, memory.followed->rotation};
+  }
+  const bool searched_in_vain = !memory.unique && frames_searched_ >= kFramesUntilSearchedAgain;
+  if (reacquire || searched_in_vain || (unique_ && !memory.unique)) {
+    search_is_stale_ = true;
+    challenger_.reset();
+  }
+  unique_ = memory.unique;
+}
+
+void PoseFinder::begin_search(MeasurementTime time) {
+  search_is_stale_ = false;
+  frames_searched_ = 0;
+  Box reach = config_.hull.envelope;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (last_seen_) {
+    const double unseen = std::max(0.0, to_seconds(time - last_seen_->time));
+    const double far = std::min(kFarthestUnseen, kFastestUnseen * unseen + kUnseen);
+    reach.min.x() = std::min(reach.min.x(), static_cast<float>(last_seen_->displacement.x() - far));
+    reach.max.x() = std::max(reach.max.x(), static_cast<float>(last_seen_->displacement.x() + far));
+    rotation = last_seen_->rotation;
+  }
+  search_.begin(few_W_, reach, rotation);
+}
+
+}  // namespace hulltrack

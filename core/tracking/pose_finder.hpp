@@ -1,0 +1,80 @@
+// Which pose explains this scan best? Start poses, the alignment from the best of them, and the search for
+// others while nothing vouches for the place.
+//
+// Starts are the PLC's own pose (no motion of the hull at all), the hull followed from the last frames with
+// its speed, and what the search found; the one that explains most of the scan is aligned. Since the PLC's
+// start is always among them and every frame is aligned to the map, no error accumulates; that a false place
+// does not persist either is the business of one challenge a frame.
+// Frames: scan in W, answers as T_H_W; metres, radians. Failure: states in IcpResult.
+// Thread rule: one owner. Cost: 2 ms a frame when following, up to 10 ms more while searching.
+#pragma once
+
+#include <optional>
+
+#include "core/filter/voxel_filter.hpp"
+#include "core/geometry/cloud.hpp"
+#include "core/map/hull_map.hpp"
+#include "core/registration/point_to_plane_icp.hpp"
+#include "core/registration/point_to_point_icp.hpp"
+#include "core/tracking/health.hpp"
+#include "core/tracking/hull_search.hpp"
+#include "core/tracking/tracker_config.hpp"
+
+namespace hulltrack {
+
+class PoseFinder {
+ public:
+  /// `map` must outlive this.
+  PoseFinder(const TrackerConfig& config, const HullMap& map);
+
+  /// T_H_W of the scan `hull_W` taken at `time`. `memory`: of the frames before.
+  [[nodiscard]] IcpResult find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory);
+
+  /// While the place is not unique: another place that explains the scan about as well as T_H_W and has not
+  /// been examined yet, aligned with all of the scan.
+  struct Rival {
+    Pose start;  // T_H_W, the place
+    Pose T_H_W;  // what aligning it led to
+  };
+  [[nodiscard]] std::optional<Rival> rival(const Pose& T_H_W);
+
+  /// What examining a pose came to: of find() (which is its own start) or of rival().
+  void settle(const Pose& start, const Pose& T_H_W, bool contradicted);
+
+  /// Where the search stands; `T_H_W` is the answer of find().
+  [[nodiscard]] SearchEvidence evidence(const Pose& T_H_W) const;
+
+  /// To be called when the frame is judged: begins a search when it is due.
+  void judged(const HealthMemory& memory, bool reacquire, MeasurementTime time);
+
+  /// The thinned scan of the last find(), W.
+  [[nodiscard]] const Cloud& thinned_W() const { return thinned_W_; }
+
+ private:
+  struct LastSeen {
+    MeasurementTime time;
+    Eigen::Vector3d displacement;
+    Eigen::Matrix3d rotation;
+  };
+  void thin(const Cloud& hull_W);
+  [[nodiscard]] Pose best_start(MeasurementTime time, const HealthMemory& memory);
+  [[nodiscard]] Pose followed(MeasurementTime time, const HealthMemory& memory) const;
+  void begin_search(MeasurementTime time);
+
+  TrackerConfig config_;
+  const HullMap* map_;
+  VoxelFilter voxel_filter_;
+  PointToPointIcp point_icp_;
+  PointToPlaneIcp plane_icp_;
+  HullSearch search_;
+
+  Cloud thinned_W_;
+  Cloud few_W_;  // of the thinned scan, evenly taken
+  std::optional<Pose> challenger_;     // T_H_W, found by the last frame, explains more than its pose
+  std::optional<LastSeen> last_seen_;  // the newest followed pose since the last re-acquire edge
+  bool unique_ = false;                // of the memory, when the last frame was judged
+  bool search_is_stale_ = true;        // it begins anew with the next scan that shows enough
+  int frames_searched_ = 0;            // since all starts were tried
+};
+
+}  // namespace hulltrack
