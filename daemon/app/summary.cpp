@@ -40,22 +40,22 @@ std::string lidar_words(const WriteBlock& registers, const Figures& figures) {
 constexpr double kHour = 3600.0;  // s
 constexpr double kMinute = 60.0;  // s
 
-/// ", growing 0.10 deg/h" of a lean that changes by `rate`, rad/s; empty while the rate is unknown.
-std::string lean_rate(double lean, const std::optional<double>& rate) {
-  if (!rate) {
-    return {};
+/// ", sinking 1.1 m/h", or ", steady" where that rounds to nothing.
+std::string hourly(double an_hour, const char* up, const char* down, const char* unit) {
+  if (std::abs(an_hour) < 0.05) {
+    return ", steady";
   }
-  return format_text(", %s %.2f deg/h", lean * *rate >= 0.0 ? "growing" : "easing",
-                     std::abs(degrees(*rate)) * kHour);
+  return format_text(", %s %.1f %s", an_hour > 0.0 ? up : down, std::abs(an_hour), unit);
+}
+
+std::string lean_rate(double lean, const std::optional<double>& rate) {
+  return rate ? hourly(std::copysign(degrees(*rate), lean * *rate) * kHour, "growing", "easing", "deg/h")
+              : "";
 }
 
 std::string draft_words(const ShipMotion& now, const std::optional<ShipMotion>& rate) {
-  std::string words = format_text("%.2f m %s", std::abs(now.draft), now.draft >= 0.0 ? "deeper" : "higher");
-  if (rate) {
-    words += format_text(", %s %.2f m/h", rate->draft >= 0.0 ? "sinking" : "rising",
-                         std::abs(rate->draft) * kHour);
-  }
-  return words;
+  return format_text("%.2f m %s", std::abs(now.draft), now.draft >= 0.0 ? "deeper" : "higher") +
+         (rate ? hourly(rate->draft * kHour, "sinking", "rising", "m/h") : "");
 }
 
 std::string heel_words(const ShipMotion& now, const std::optional<ShipMotion>& rate) {

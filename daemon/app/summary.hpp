@@ -21,7 +21,7 @@ namespace hulltrack {
 [[nodiscard]] std::string summary_line(const WriteBlock& registers, const Figures& figures,
                                        Nanoseconds window);
 
-/// "hull since its map: 1.32 m deeper, sinking 1.07 m/h; ...": how it lies, and how fast that changes. Sides
+/// "hull since its map: 1.32 m deeper, sinking 1.1 m/h; ...": how it lies, and how fast that changes. Sides
 /// and ends are those of the quay's axes, hulltrackd(8).
 [[nodiscard]] std::string hull_line(const std::optional<HullFigures>& hull, SteadyTime now);
 

@@ -69,12 +69,13 @@ void append_bend(std::string& line, const TrackResult& r) {
 }
 
 void append_covariance(std::string& line, const TrackResult& r) {
+  const bool known = r.sigma_translation >= 0.0 && !r.covariance.isZero(0.0);
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) {
-      if (r.sigma_translation < 0.0) {
-        line += ',';
-      } else {
+      if (known) {
         append(line, r.covariance(row, column));
+      } else {
+        line += ',';
       }
     }
   }

@@ -69,7 +69,7 @@ HullFigures loading() {
   HullFigures hull;
   hull.when = kNow - std::chrono::milliseconds(200);
   hull.motion.now = ShipMotion{1.324, radians(0.52), radians(-0.30), 0.05};
-  hull.motion.rate = ShipMotion{1.07 / 3600, radians(-0.10) / 3600, radians(-0.02) / 3600, -0.25 / 60};
+  hull.motion.rate = ShipMotion{1.07 / 3600, radians(-0.10) / 3600, radians(-0.2) / 3600, -0.25 / 60};
   hull.motion.mapped_length = 120.0;
   return hull;
 }
@@ -77,8 +77,8 @@ HullFigures loading() {
 TEST(HullLine, SaysWhichSideAndEndIsDownAndWhetherThatGrows) {
   EXPECT_EQ(
       hull_line(loading(), kNow),
-      "hull since its map: 1.32 m deeper, sinking 1.07 m/h; heel 0.52 deg, -Y side down, easing 0.10 deg/h; "
-      "trim 0.30 deg (0.63 m over 120 m), -X end down, growing 0.02 deg/h; surge +0.05 m, -0.25 m/min");
+      "hull since its map: 1.32 m deeper, sinking 1.1 m/h; heel 0.52 deg, -Y side down, easing 0.1 deg/h; "
+      "trim 0.30 deg (0.63 m over 120 m), -X end down, growing 0.2 deg/h; surge +0.05 m, -0.25 m/min");
 }
 
 TEST(HullLine, NamesTheOppositesToo) {
@@ -86,9 +86,17 @@ TEST(HullLine, NamesTheOppositesToo) {
   hull.motion.now = ShipMotion{-0.4, radians(-0.5), radians(0.3), -0.05};
   hull.motion.rate->draft = -0.5 / 3600;
   const std::string line = hull_line(hull, kNow);
-  EXPECT_THAT(line, HasSubstr("0.40 m higher, rising 0.50 m/h"));
+  EXPECT_THAT(line, HasSubstr("0.40 m higher, rising 0.5 m/h"));
   EXPECT_THAT(line, HasSubstr("heel 0.50 deg, +Y side down, growing"));
   EXPECT_THAT(line, HasSubstr("+X end down, easing"));
+}
+
+TEST(HullLine, ARateThatRoundsToNothingIsSteady) {
+  HullFigures hull = loading();
+  hull.motion.rate = ShipMotion{-0.04 / 3600, radians(0.04) / 3600, 0.0, 0.0};
+  EXPECT_EQ(hull_line(hull, kNow),
+            "hull since its map: 1.32 m deeper, steady; heel 0.52 deg, -Y side down, steady; "
+            "trim 0.30 deg (0.63 m over 120 m), -X end down, steady; surge +0.05 m, +0.00 m/min");
 }
 
 TEST(HullLine, WhatIsUnknownIsSaid) {

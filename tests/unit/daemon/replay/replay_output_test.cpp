@@ -55,6 +55,9 @@ TEST(FrameCsv, WhatIsUnknownIsEmpty) {
   const std::string line = frame_csv_line(not_registered, std::nullopt);
   EXPECT_EQ(line, "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0," + std::string(10 + 21, ','));
   EXPECT_EQ(columns(line).size(), 21U + 10U + 21U);
+  TrackResult sigma_alone = result(3, 0.1, State::tracking);
+  sigma_alone.sigma_translation = 0.01;
+  EXPECT_EQ(columns(frame_csv_line(sigma_alone, 1.5))["c_rx_rx"], "") << "nobody's covariance is zero";
 }
 
 TEST(FrameCsv, MotionHasTheUnitsOfTheOperator) {
