@@ -1,5 +1,6 @@
 #include "core/io/csv_lines.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -43,7 +44,7 @@ Result<bool> CsvLines::read_line() {
   return true;
 }
 
-Result<void> CsvLines::expect_header(std::string_view header) {
+Result<std::size_t> CsvLines::expect_header(std::string_view header, std::size_t least) {
   if (!stream_) {
     return Error{name_ + ": cannot be opened: " + std::strerror(errno)};
   }
@@ -54,11 +55,14 @@ Result<void> CsvLines::expect_header(std::string_view header) {
   if (!*more) {
     return Error{name_ + ": is empty; its first line must be `" + std::string(header) + "`"};
   }
-  if (text_ != header) {
+  const auto names = 1 + static_cast<std::size_t>(std::count(text_.begin(), text_.end(), ','));
+  const bool begins = header.starts_with(text_) &&
+                      (text_.size() == header.size() || header.substr(text_.size()).starts_with(','));
+  if (names < least || !begins) {
     return error("the first line must be `" + std::string(header) + "`, it is `" +
                  std::string(text_.substr(0, 80)) + "`");
   }
-  return {};
+  return names;
 }
 
 Result<bool> CsvLines::next(std::size_t field_count) {

@@ -19,8 +19,9 @@ class CsvLines {
   static constexpr std::size_t kMaxLine = 1024;
 
   explicit CsvLines(const std::filesystem::path& file);
-  /// Reads the first line and compares it with `header`.
-  [[nodiscard]] Result<void> expect_header(std::string_view header);
+  /// Reads the first line, which has to be `header`, or a beginning of it with at least `least` names.
+  /// Answers how many names it has.
+  [[nodiscard]] Result<std::size_t> expect_header(std::string_view header, std::size_t least);
   /// Reads the next line into fields(); false at the end of the file, which blank lines may precede.
   [[nodiscard]] Result<bool> next(std::size_t field_count);
   [[nodiscard]] const std::vector<std::string_view>& fields() const { return fields_; }

@@ -9,7 +9,8 @@
 namespace hulltrack {
 namespace {
 
-/// What a row type looks like in a file: its header, and the way from and to fields.
+/// What a row type looks like in a file: its header, how many of its columns an older file may stop after,
+/// and the way from and to fields.
 template <typename Row>
 struct Format;
 
@@ -30,6 +31,7 @@ class FieldReader {
       problem_ = name + " is `" + std::string(field.substr(0, 40)) + "`, must be " + what;
     }
   }
+  [[nodiscard]] bool more() const { return index_ < lines_.fields().size(); }
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
@@ -44,7 +46,7 @@ constexpr const char* kFinite = "a finite number";
 template <>
 struct Format<PlcCsvRow> {
   static constexpr std::string_view kHeader = "t_ns,d_x,theta_r,theta_p,heartbeat,command";
-  static constexpr std::size_t kFields = 6;
+  static constexpr std::size_t kLeast = 6;
   static void parse(FieldReader& in, PlcCsvRow& row) {
     in.take(row.t_ns, "whole nanoseconds");
     in.take(row.d_x, kFinite);
@@ -62,8 +64,8 @@ struct Format<PlcCsvRow> {
 
 template <>
 struct Format<TruthRow> {
-  static constexpr std::string_view kHeader = "t_ns,x,y,z,roll,pitch,yaw";
-  static constexpr std::size_t kFields = 7;
+  static constexpr std::string_view kHeader = "t_ns,x,y,z,roll,pitch,yaw,bend";
+  static constexpr std::size_t kLeast = 7;
   static void parse(FieldReader& in, TruthRow& row) {
     in.take(row.t_ns, "whole nanoseconds");
     for (double& value : row.xyz) {
@@ -71,6 +73,9 @@ struct Format<TruthRow> {
     }
     for (double& value : row.rpy_deg) {
       in.take(value, kFinite);
+    }
+    if (in.more()) {
+      in.take(row.bend, kFinite);
     }
   }
   template <typename Put>
@@ -82,18 +87,20 @@ struct Format<TruthRow> {
     for (const double value : row.rpy_deg) {
       put(value);
     }
+    put(row.bend);
   }
 };
 
 template <typename Row>
 Result<std::vector<Row>> read_rows(const std::filesystem::path& file) {
   CsvLines lines(file);
-  if (const auto header = lines.expect_header(Format<Row>::kHeader); !header) {
-    return header.error();
+  const auto columns = lines.expect_header(Format<Row>::kHeader, Format<Row>::kLeast);
+  if (!columns) {
+    return columns.error();
   }
   std::vector<Row> rows;
   while (true) {
-    const auto more = lines.next(Format<Row>::kFields);
+    const auto more = lines.next(*columns);
     if (!more) {
       return more.error();
     }

@@ -1,10 +1,10 @@
 // The tables of a recording folder: plc.csv (what the PLC presented) and truth.csv (simulations only).
 //
 // Units as in the files: nanoseconds of UTC, metres, degrees. plc.latency_ms is not subtracted in a file.
-// Reading is strict: the exact header, every field a finite number, time never running backwards (equal
-// times are allowed); CR LF and a missing last newline are accepted. An error names FILE:LINE.
-// Writing keeps every bit (shortest text that reads back equal) and reports a full disk.
-// Thread rule: plain functions; a writer has one owner.
+// Reading is strict: the exact header (truth.csv with or without its last column), every field a finite
+// number, time never running backwards (equal times are allowed); CR LF and a missing last newline are
+// accepted. An error names FILE:LINE. Writing keeps every bit (shortest text that reads back equal) and
+// reports a full disk. Thread rule: plain functions; a writer has one owner.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,11 +29,13 @@ struct PlcCsvRow {
   std::uint16_t command = 0;
 };
 
-/// Header `t_ns,x,y,z,roll,pitch,yaw`: the hull pose as the registers define it.
+/// Header `t_ns,x,y,z,roll,pitch,yaw,bend`: the hull pose as the registers define it, and how much the hull
+/// has bent since the map was made; a file without the last column has a stiff hull.
 struct TruthRow {
   std::int64_t t_ns = 0;
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();  // displacement of the reference point, m
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
+  double bend = 0.0;  // m that the middle lies below the chord through the ends: > 0 a sag, < 0 a hog
 };
 
 /// All rows of a file, or the first thing wrong with it. A file without rows is an error.

@@ -40,7 +40,9 @@ class MemoryFile {
 bool finite(const PlcCsvRow& row) {
   return std::isfinite(row.d_x) && std::isfinite(row.theta_r_deg) && std::isfinite(row.theta_p_deg);
 }
-bool finite(const TruthRow& row) { return row.xyz.allFinite() && row.rpy_deg.allFinite(); }
+bool finite(const TruthRow& row) {
+  return row.xyz.allFinite() && row.rpy_deg.allFinite() && std::isfinite(row.bend);
+}
 
 template <typename Row>
 void check(const Result<std::vector<Row>>& rows, const std::string& path) {

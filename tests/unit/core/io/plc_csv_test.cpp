@@ -48,13 +48,27 @@ TEST(TruthCsv, WhatIsWrittenReadsBackBitForBit) {
   const auto file = folder.path() / "truth.csv";
   auto writer = TruthCsvWriter::create(file);
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->write({7, {0.1, -0.2, 1e-9}, {359.9, -1.0 / 7.0, 0.0}}));
+  ASSERT_TRUE(writer->write({7, {0.1, -0.2, 1e-9}, {359.9, -1.0 / 7.0, 0.0}, -0.125}));
   ASSERT_TRUE(writer->close());
-  EXPECT_THAT(test::read_text(file), HasSubstr("t_ns,x,y,z,roll,pitch,yaw\n7,0.1,-0.2,1e-09,359.9,"));
+  EXPECT_THAT(test::read_text(file), HasSubstr("t_ns,x,y,z,roll,pitch,yaw,bend\n7,0.1,-0.2,1e-09,359.9,"));
   const auto back = read_truth_csv(file);
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->front().xyz, Eigen::Vector3d(0.1, -0.2, 1e-9));
   EXPECT_EQ(back->front().rpy_deg, Eigen::Vector3d(359.9, -1.0 / 7.0, 0.0));
+  EXPECT_EQ(back->front().bend, -0.125);
+}
+
+TEST(TruthCsv, AFileWithoutABendHasAStiffHullAndOneMissingAnythingElseIsRefused) {
+  const TempFolder folder;
+  const auto stiff = read_truth_csv(folder.file("stiff.csv", "t_ns,x,y,z,roll,pitch,yaw\n7,1,2,3,4,5,6\n"));
+  ASSERT_TRUE(stiff) << stiff.error().message;
+  EXPECT_EQ(stiff->front().rpy_deg.z(), 6.0);
+  EXPECT_EQ(stiff->front().bend, 0.0);
+  for (const char* content : {"t_ns,x,y,z,roll,pitch\n7,1,2,3,4,5\n",             // a column short
+                              "t_ns,x,y,z,roll,pitch,yaw,be\n7,1,2,3,4,5,6,0\n",  // half a name
+                              "t_ns,x,y,z,roll,pitch,yaw,bend,more\n7,1,2,3,4,5,6,0,0\n",
+                              "t_ns,x,y,z,roll,pitch,yaw\n7,1,2,3,4,5,6,0\n"})  // a field without a name
+    EXPECT_FALSE(read_truth_csv(folder.file("bad.csv", content))) << content;
 }
 
 TEST(PlcCsv, AcceptsCarriageReturnsEqualTimesAndAMissingLastNewline) {
