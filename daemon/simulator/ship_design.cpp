@@ -1,16 +1,18 @@
 #include "daemon/simulator/ship_design.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hulltrack {
 
 ShipDesign berth_ship() {
   ShipDesign ship;
-  ship.hatches = {{-32.0F, 17.5F, 12.6F, 1.30F, true, 1.9F},
-                  {-10.0F, 18.2F, 12.6F, 1.30F, true, 2.2F},
-                  {12.6F, 18.2F, 12.6F, 1.45F, false, 2.0F},
-                  {32.8F, 15.4F, 11.4F, 1.60F, false, 1.7F}};
+  ship.hatches = {{-32.0F, 17.5F, 12.6F, 1.30F, Covers::aft, 1.9F, 99680},
+                  {-10.0F, 18.2F, 12.6F, 1.30F, Covers::aft, 2.2F, 99900},
+                  {12.6F, 18.2F, 12.6F, 1.45F, Covers::forward, 2.0F, 100126},
+                  {32.8F, 15.4F, 11.4F, 1.60F, Covers::forward, 1.7F, 100328}};
+  ship.fitted_around = ship.hatches;
   return ship;
 }
 
@@ -25,12 +27,45 @@ ShipDesign stranger_ship() {
   ship.house_length = 10.0F;
   ship.house_height = 13.5F;
   ship.house_aft_end = -58.0F;
-  ship.hatches = {{-37.0F, 13.4F, 14.0F, 1.20F, false, 1.6F},
-                  {-20.2F, 14.2F, 14.0F, 1.20F, true, 1.8F},
-                  {-2.6F, 14.2F, 14.0F, 1.35F, false, 1.8F},
-                  {15.1F, 14.2F, 14.0F, 1.35F, true, 2.1F},
-                  {33.2F, 12.8F, 12.4F, 1.50F, true, 1.6F}};
+  ship.hatches = {{-37.0F, 13.4F, 14.0F, 1.20F, Covers::forward, 1.6F, 99630},
+                  {-20.2F, 14.2F, 14.0F, 1.20F, Covers::aft, 1.8F, 99798},
+                  {-2.6F, 14.2F, 14.0F, 1.35F, Covers::forward, 1.8F, 99974},
+                  {15.1F, 14.2F, 14.0F, 1.35F, Covers::aft, 2.1F, 100151},
+                  {33.2F, 12.8F, 12.4F, 1.50F, Covers::aft, 1.6F, 100332}};
+  ship.fitted_around = ship.hatches;
   ship.fittings_seed = 77;
+  return ship;
+}
+
+ShipDesign sister_with_other_hatch_places() {
+  ShipDesign ship = berth_ship();
+  constexpr std::array kShift = {0.24F, -0.15F, 0.12F, -0.28F};
+  for (std::size_t i = 0; i < kShift.size(); ++i) ship.hatches.at(i).centre += kShift.at(i);
+  return ship;
+}
+
+ShipDesign sister_with_other_coamings() {
+  ShipDesign ship = berth_ship();
+  constexpr std::array kHigher = {0.15F, -0.25F, 0.30F, -0.12F};
+  for (std::size_t i = 0; i < kHigher.size(); ++i) ship.hatches.at(i).coaming_height += kHigher.at(i);
+  return ship;
+}
+
+ShipDesign sister_with_other_openings() {
+  ShipDesign ship = berth_ship();
+  constexpr std::array kLonger = {0.25F, -0.20F, 0.30F, -0.15F};
+  constexpr std::array kWider = {-0.20F, 0.30F, -0.25F, 0.20F};
+  for (std::size_t i = 0; i < kLonger.size(); ++i) {
+    ship.hatches.at(i).length += kLonger.at(i);
+    ship.hatches.at(i).width += kWider.at(i);
+  }
+  return ship;
+}
+
+ShipDesign ship_with_moved_covers() {
+  ShipDesign ship = berth_ship();
+  constexpr std::array kNow = {Covers::closed, Covers::forward, Covers::aft, Covers::closed};
+  for (std::size_t i = 0; i < kNow.size(); ++i) ship.hatches.at(i).covers = kNow.at(i);
   return ship;
 }
 

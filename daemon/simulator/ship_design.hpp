@@ -11,14 +11,18 @@
 
 namespace hulltrack {
 
-/// A hatch opening with its coaming. Its covers are folded up at one end of it.
+/// Where a hatch's covers are: folded up at one end of the opening, or closed over it.
+enum class Covers : std::uint8_t { aft, forward, closed };
+
+/// A hatch opening with its coaming and covers.
 struct Hatch {
   float centre;          // x of the middle, m
   float length;          // along the ship, m
   float width;           // across, m
   float coaming_height;  // above the deck, m
-  bool covers_aft;       // the folded covers stand at the after end
-  float cover_height;    // of the folded covers above the coaming, m
+  Covers covers;
+  float cover_height;     // of the folded covers above the coaming, m
+  std::uint64_t details;  // of which coaming stays and covers: the same number, the same ones
 };
 
 struct ShipDesign {
@@ -34,7 +38,8 @@ struct ShipDesign {
   float tank_top = -8.6F;        // z of the hold floor
   float side_tank_width = 1.4F;  // hull side to hold side
   std::vector<Hatch> hatches;
-  std::uint64_t fittings_seed = 1;  // where vents, winches, lockers stand: no two ships alike
+  std::vector<Hatch> fitted_around;  // the hatches that rails and fittings were laid out for
+  std::uint64_t fittings_seed = 1;   // where vents, winches, lockers stand: no two ships alike
 };
 
 /// A river and coastal bulk carrier of 120 x 20 m with four hatches: the ship of the map.
@@ -42,6 +47,16 @@ struct ShipDesign {
 
 /// Another ship of the same trade: 127 x 21 m, five hatches elsewhere, house and fittings of its own.
 [[nodiscard]] ShipDesign stranger_ship();
+
+/// Sisters of berth_ship(), alike but for 10 to 30 cm: where the hatches are along the ship, how high the
+/// coamings are, how long and wide the openings are.
+[[nodiscard]] ShipDesign sister_with_other_hatch_places();
+[[nodiscard]] ShipDesign sister_with_other_coamings();
+[[nodiscard]] ShipDesign sister_with_other_openings();
+
+/// berth_ship() after the crew has closed two hatches and folded the covers of the others up at their other
+/// ends.
+[[nodiscard]] ShipDesign ship_with_moved_covers();
 
 /// Half of the hull's breadth at deck level, m; 0 beyond the ends.
 [[nodiscard]] float half_breadth(const ShipDesign& ship, float x);

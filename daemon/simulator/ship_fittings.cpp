@@ -57,8 +57,8 @@ void furnish_cross_deck(TriangleMesh& mesh, const ShipDesign& ship, float x0, fl
 
 /// Along both sides: pipes, bollards, air pipes, lockers at irregular places.
 void furnish_side_decks(TriangleMesh& mesh, const ShipDesign& ship, RandomStream& random) {
-  const float aft = ship.hatches.front().centre - 0.5F * ship.hatches.front().length;
-  const float forward = ship.hatches.back().centre + 0.5F * ship.hatches.back().length;
+  const float aft = ship.fitted_around.front().centre - 0.5F * ship.fitted_around.front().length;
+  const float forward = ship.fitted_around.back().centre + 0.5F * ship.fitted_around.back().length;
   const float y = 0.5F * ship.beam - 0.7F;
   for (const float side : {-1.0F, 1.0F}) {
     for (float x = aft; x < forward; x += draw(random, 3.0, 8.0)) {
@@ -121,15 +121,15 @@ void add_house(TriangleMesh& mesh, const ShipDesign& ship) {
 void add_fittings(TriangleMesh& mesh, const ShipDesign& ship) {
   RandomStream random(ship.fittings_seed, 7);
   constexpr float kCoversReach = 1.7F;  // the folded covers' share of the cross deck, both ends alike
-  for (std::size_t i = 0; i + 1 < ship.hatches.size(); ++i) {
-    const float x0 = ship.hatches[i].centre + 0.5F * ship.hatches[i].length + 0.6F;
-    const float x1 = ship.hatches[i + 1].centre - 0.5F * ship.hatches[i + 1].length - 0.6F;
-    const float aft_limit = ship.hatches[i].covers_aft ? x0 : x0 + kCoversReach;
-    const float forward_limit = ship.hatches[i + 1].covers_aft ? x1 - kCoversReach : x1;
+  for (std::size_t i = 0; i + 1 < ship.fitted_around.size(); ++i) {
+    const float x0 = ship.fitted_around[i].centre + 0.5F * ship.fitted_around[i].length + 0.6F;
+    const float x1 = ship.fitted_around[i + 1].centre - 0.5F * ship.fitted_around[i + 1].length - 0.6F;
+    const float aft_limit = ship.fitted_around[i].covers == Covers::aft ? x0 : x0 + kCoversReach;
+    const float forward_limit = ship.fitted_around[i + 1].covers == Covers::aft ? x1 - kCoversReach : x1;
     if (aft_limit + 0.3F < forward_limit) furnish_cross_deck(mesh, ship, aft_limit, forward_limit, random);
   }
   const float house_front = ship.house_aft_end + ship.house_length;
-  const float first_hatch = ship.hatches.front().centre - 0.5F * ship.hatches.front().length;
+  const float first_hatch = ship.fitted_around.front().centre - 0.5F * ship.fitted_around.front().length;
   furnish_cross_deck(mesh, ship, house_front + 0.6F, first_hatch - 2.8F, random);
   furnish_side_decks(mesh, ship, random);
   furnish_forecastle(mesh, ship);

@@ -1,4 +1,4 @@
-// One hatch: the coaming with its stays, the hold below it, the folded covers at one end.
+// One hatch: the coaming with its stays, the hold below it, the covers folded at one end or closed.
 #include "daemon/simulator/ship_mesh.hpp"
 
 #include <algorithm>
@@ -59,8 +59,9 @@ void add_hold(TriangleMesh& mesh, const ShipDesign& ship, const Opening& o) {
 void add_folded_covers(TriangleMesh& mesh, const Hatch& hatch, const Opening& o, RandomStream& random) {
   constexpr int kPanels = 4;
   constexpr float kPanelThickness = 0.28F;
-  const float away = hatch.covers_aft ? -1.0F : 1.0F;
-  const float start = hatch.covers_aft ? o.x0 : o.x1;
+  const bool aft = hatch.covers == Covers::aft;
+  const float away = aft ? -1.0F : 1.0F;
+  const float start = aft ? o.x0 : o.x1;
   for (int i = 0; i < kPanels; ++i) {
     const float a = start + away * (0.05F + 0.42F * static_cast<float>(i));
     const float b = a + away * kPanelThickness;
@@ -70,18 +71,33 @@ void add_folded_covers(TriangleMesh& mesh, const Hatch& hatch, const Opening& o,
   }
 }
 
+/// Panels side by side over the opening, a hand's breadth apart in height where they overlap.
+void add_closed_covers(TriangleMesh& mesh, const Opening& o) {
+  constexpr int kPanels = 4;
+  constexpr float kPanelDepth = 0.65F;
+  constexpr float kStagger = 0.08F;
+  const float length = (o.x1 - o.x0) / kPanels;
+  for (int i = 0; i < kPanels; ++i) {
+    const float x = o.x0 + static_cast<float>(i) * length;
+    const float top = o.top + kPanelDepth + (i % 2 == 0 ? 0.0F : kStagger);
+    add_box(mesh, {x, -o.y - 0.2F, o.top}, {x + length, o.y + 0.2F, top}, Material::steel);
+  }
+}
+
 }  // namespace
 
 void add_hatch(TriangleMesh& mesh, const ShipDesign& ship, const Hatch& hatch) {
-  RandomStream random(ship.fittings_seed, 5,
-                      static_cast<std::uint64_t>(std::lround(hatch.centre * 10.0F) + 100000));
+  RandomStream random(ship.fittings_seed, 5, hatch.details);
   const float deck = deck_height(ship, hatch.centre);
   const Opening opening{hatch.centre - 0.5F * hatch.length, hatch.centre + 0.5F * hatch.length,
                         0.5F * hatch.width, deck, deck + hatch.coaming_height};
   add_coaming(mesh, opening);
   add_stays(mesh, opening, random);
   add_hold(mesh, ship, opening);
-  add_folded_covers(mesh, hatch, opening, random);
+  if (hatch.covers == Covers::closed)
+    add_closed_covers(mesh, opening);
+  else
+    add_folded_covers(mesh, hatch, opening, random);
 }
 
 }  // namespace hulltrack

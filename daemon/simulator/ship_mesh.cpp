@@ -55,7 +55,8 @@ void add_hull_piece(TriangleMesh& mesh, const ShipDesign& ship, float x0, float 
 /// Posts and two bars above the low bulwark beside the hatches.
 void add_rails(TriangleMesh& mesh, const ShipDesign& ship) {
   constexpr float kPostSpacing = 2.1F;
-  const float aft = ship.hatches.front().centre - 0.5F * ship.hatches.front().length;
+  const Hatch& first = ship.fitted_around.front();
+  const float aft = first.centre - 0.5F * first.length;
   const float forward = 0.5F * ship.length - ship.bow_length;
   const float y = 0.5F * ship.beam - 0.08F;
   for (const float side : {-1.0F, 1.0F}) {
@@ -105,7 +106,8 @@ TriangleMesh cargo_mesh(const ShipDesign& ship, float fill) {
     add_quad(mesh, {x0, -y0, floor}, {x0 + hatch.length, -y0, floor}, {x0 + hatch.length, y0, floor},
              {x0, y0, floor}, Material::ore);
     constexpr float kReposeSlope = 0.7F;  // 35 deg
-    const float radius = std::min(0.42F * hatch.length, -0.5F * floor / kReposeSlope);
+    constexpr float kFirstHeap = 30.0F;   // m of radius a unit of level: a first thin layer has no heap on it
+    const float radius = std::min({0.42F * hatch.length, -0.5F * floor / kReposeSlope, kFirstHeap * level});
     const auto shift = static_cast<float>(random.uniform(-0.06, 0.06)) * hatch.length;
     add_cone(mesh, {hatch.centre + shift, 0.0F, floor}, radius, kReposeSlope * radius, 24, Material::ore);
   }
