@@ -39,9 +39,30 @@ TriangleMesh berth_mesh() {
   TriangleMesh mesh;
   add_quay(mesh);
   add_yard(mesh);
+  return mesh;
+}
+
+TriangleMesh water_mesh() {
+  TriangleMesh mesh;
   constexpr float kReach = 400.0F;
   add_quad(mesh, {-kReach, 0.0F, kWaterLevel}, {kReach, 0.0F, kWaterLevel}, {kReach, kReach, kWaterLevel},
            {-kReach, kReach, kWaterLevel}, Material::water);
+  return mesh;
+}
+
+TriangleMesh crane_mesh() {
+  TriangleMesh mesh;
+  constexpr float kGround = -0.15F;
+  const Point heel(-1.0F, -1.3F, 3.2F);
+  const Point head(0.5F, 5.2F, 9.5F);
+  const Point load(0.5F, 5.2F, 4.6F);
+  add_box(mesh, {-4.5F, -2.4F, kGround + 0.5F}, {4.5F, -0.3F, 1.9F}, Material::white_paint);
+  for (const float x : {-3.5F, -1.8F, 1.8F, 3.5F})
+    add_cylinder(mesh, {x, -2.4F, kGround + 0.6F}, {x, -0.3F, kGround + 0.6F}, 0.6F, 12, Material::rubber);
+  add_box(mesh, {-2.5F, -2.3F, 1.9F}, {0.5F, -0.4F, 3.6F}, Material::white_paint);
+  add_cylinder(mesh, heel, head, 0.35F, 8, Material::white_paint);
+  add_cylinder(mesh, head, load, 0.05F, 6, Material::dark_steel);
+  add_box(mesh, load - Point(0.9F, 0.6F, 1.0F), load + Point(0.9F, 0.6F, 0.0F), Material::steel);
   return mesh;
 }
 

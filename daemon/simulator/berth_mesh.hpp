@@ -1,7 +1,8 @@
 // The berth around the ship, in W: quay with fenders and bollards, rails, a conveyor gallery, a stockpile,
-// a shed, the water. Everything here is clutter to the tracker.
+// a shed; the water; a crane. Everything here is clutter to the tracker.
 //
-// Quay edge y = 0 with the ship on its +y side, rail level z = 0, river level kWaterLevel. Metres. Pure.
+// Quay edge y = 0 with the ship on its +y side, rail level z = 0, river level kWaterLevel at time 0. Metres.
+// Pure.
 #pragma once
 
 #include "daemon/simulator/mesh.hpp"
@@ -11,5 +12,10 @@ namespace hulltrack {
 inline constexpr float kWaterLevel = -5.0F;  // z in W
 
 [[nodiscard]] TriangleMesh berth_mesh();
+[[nodiscard]] TriangleMesh water_mesh();
+
+/// A mobile crane at x = 0 on the strip between quay edge and rails, its jib over the ship's deck edge and a
+/// load on the hook.
+[[nodiscard]] TriangleMesh crane_mesh();
 
 }  // namespace hulltrack

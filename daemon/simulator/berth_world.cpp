@@ -1,7 +1,5 @@
 #include "daemon/simulator/berth_world.hpp"
 
-#include <utility>
-
 #include "daemon/simulator/berth_mesh.hpp"
 #include "daemon/simulator/loader_machine.hpp"
 
@@ -12,13 +10,21 @@ Eigen::Matrix<float, 3, 4> as_affine(const Pose& T) { return T.matrix().topRows<
 
 }  // namespace
 
-BerthWorld::BerthWorld(TriangleMesh hull_mesh_H, const LoaderMotion& loader, const HullMotion& hull,
-                       const Pose& mount)
-    : bodies_{RayScene(boom_mesh()), RayScene(std::move(hull_mesh_H)), RayScene(berth_mesh()),
-              RayScene(portal_mesh())},
+BerthWorld::BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const ShapeChange& change,
+                       const LoaderMotion& loader, const HullMotion& hull, const Pose& mount,
+                       const std::optional<Passage>& crane)
+    : boom_(boom_mesh()),
+      berth_(berth_mesh()),
+      portal_(portal_mesh()),
+      water_(water_mesh()),
+      passage_(crane.value_or(Passage{})),
+      change_(&change),
       loader_(&loader),
       hull_(&hull),
-      mount_(mount) {}
+      mount_(mount) {
+  for (const TriangleMesh& mesh : hull_meshes_H) hulls_.emplace_back(mesh);
+  if (crane) crane_.emplace(crane_mesh());
+}
 
 Pose BerthWorld::T_W_L(double t) const { return lidar_pose(loader_machine(), loader_->at(t), mount_); }
 
@@ -26,37 +32,74 @@ BerthWorld::Placement BerthWorld::placement(double t) const {
   const Joints joints = loader_->at(t);
   const Pose T_W_L = lidar_pose(loader_machine(), joints, mount_);
   const Pose T_G_L = Eigen::Translation3d(-joints.d_x, 0.0, 0.0) * T_W_L;
-  return {as_affine(mount_), as_affine(hull_->T_W_H(t).inverse() * T_W_L), as_affine(T_W_L),
-          as_affine(T_G_L)};
+  const Pose T_water_L = Eigen::Translation3d(0.0, 0.0, hull_->ebb(t)) * T_W_L;
+  const double driven = passage_.from + run_distance(passage_.run, t);
+  Placement L_from;
+  L_from[kBoom] = as_affine(mount_);
+  L_from[kHull] = as_affine(hull_->T_W_H(t).inverse() * T_W_L);
+  L_from[kBerth] = as_affine(T_W_L);
+  L_from[kPortal] = as_affine(T_G_L);
+  L_from[kWater] = as_affine(T_water_L);
+  L_from[kCrane] = as_affine(Eigen::Translation3d(-driven, 0.0, 0.0) * T_W_L);
+  return L_from;
 }
 
 BerthWorld::Sweep BerthWorld::sweep(double begin, double end) const {
   return {begin, end, placement(begin), placement(end)};
 }
 
+BerthWorld::Affine BerthWorld::between(const Sweep& sweep, double t, std::size_t body) {
+  const auto s = static_cast<float>((t - sweep.begin) / (sweep.end - sweep.begin));
+  return (1.0F - s) * sweep.at_begin[body] + s * sweep.at_end[body];
+}
+
+std::pair<Point, Point> BerthWorld::ray_W(const Sweep& sweep, double t, const Point& origin_L,
+                                          const Point& direction_L) {
+  const Affine T_W_L = between(sweep, t, kBerth);
+  return {T_W_L.leftCols<3>() * origin_L + T_W_L.col(3), T_W_L.leftCols<3>() * direction_L};
+}
+
+const RayScene* BerthWorld::scene(std::size_t body, std::size_t shape) const {
+  switch (body) {
+    case kBoom:
+      return &boom_;
+    case kHull:
+      return &hulls_[shape];
+    case kBerth:
+      return &berth_;
+    case kPortal:
+      return &portal_;
+    case kWater:
+      return &water_;
+    default:
+      return crane_ ? &*crane_ : nullptr;
+  }
+}
+
 std::optional<RayHit> BerthWorld::cast(const Sweep& sweep, double t, const Point& origin_L,
                                        const Point& direction_L, float max_range) const {
-  const auto s = static_cast<float>((t - sweep.begin) / (sweep.end - sweep.begin));
+  const std::size_t shape = change_->at(t);
   std::optional<RayHit> nearest;
   float reach = max_range;
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    const Eigen::Matrix<float, 3, 4> T = (1.0F - s) * sweep.at_begin[body] + s * sweep.at_end[body];
+  for (std::size_t body = 0; body < Sweep::kBodies; ++body) {
+    const RayScene* surfaces = scene(body, shape);
+    if (surfaces == nullptr) continue;
+    const Affine T = between(sweep, t, body);
     const Point origin = T.leftCols<3>() * origin_L + T.col(3);
     const Point direction = T.leftCols<3>() * direction_L;
-    const auto hit = bodies_[body].cast(origin, direction, reach);
+    const auto hit = surfaces->cast(origin, direction, reach);
     if (!hit) continue;
-    if (hit->material == Material::water && displaced(sweep, s, origin_L + hit->distance * direction_L))
-      continue;
+    if (body == kWater && displaced(sweep, t, shape, origin_L + hit->distance * direction_L)) continue;
     nearest = hit;
     reach = hit->distance;
   }
   return nearest;
 }
 
-bool BerthWorld::displaced(const Sweep& sweep, float s, const Point& p_L) const {
-  const Eigen::Matrix<float, 3, 4> T_H_L = (1.0F - s) * sweep.at_begin[kHull] + s * sweep.at_end[kHull];
+bool BerthWorld::displaced(const Sweep& sweep, double t, std::size_t shape, const Point& p_L) const {
+  const Affine T_H_L = between(sweep, t, kHull);
   constexpr float kBelowAnyKeel = 20.0F;  // m
-  return bodies_[kHull].blocked(T_H_L.leftCols<3>() * p_L + T_H_L.col(3), {0.0F, 0.0F, -1.0F}, kBelowAnyKeel);
+  return hulls_[shape].blocked(T_H_L.leftCols<3>() * p_L + T_H_L.col(3), {0.0F, 0.0F, -1.0F}, kBelowAnyKeel);
 }
 
 }  // namespace hulltrack

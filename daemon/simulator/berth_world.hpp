@@ -1,5 +1,6 @@
-// What does a ray from the LiDAR meet at time t? Four rigid bodies: the berth in W, the hull in H, the
-// portal in G, the boom in B, each where it is at that very moment.
+// What does a ray leaving the LiDAR at time t meet? The berth with bodies that move on their own: berth in W,
+// water in W at the tide's level, hull in H, portal in G, boom in B, a crane that drives past - each where it
+// is at that very moment, the hull in the shape that it has by then.
 //
 // Rays are given in L. Within a `Sweep` (one datagram, about a millisecond) the bodies' poses are
 // interpolated between its ends, which is exact to well below a micrometre. Metres, seconds from the first
@@ -8,25 +9,37 @@
 
 #include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/kinematics/loader_kinematics.hpp"
 #include "daemon/simulator/hull_motion.hpp"
+#include "daemon/simulator/hull_shape.hpp"
 #include "daemon/simulator/loader_motion.hpp"
 #include "daemon/simulator/ray_scene.hpp"
 
 namespace hulltrack {
 
+/// A crane drives along the quay: from x = `from` on, forward in W.
+struct Passage {
+  double from = 0.0;  // m
+  Run run;
+};
+
 class BerthWorld {
  public:
   /// L seen from each body at the beginning and the end of a short span of time.
   struct Sweep {
-    static constexpr std::size_t kBodies = 4;
+    static constexpr std::size_t kBodies = 6;
     double begin, end;  // s
     std::array<Eigen::Matrix<float, 3, 4>, kBodies> at_begin, at_end;
   };
 
-  /// `hull_mesh_H` is the ship as it lay when the map was made. Motions must outlive the world.
-  BerthWorld(TriangleMesh hull_mesh_H, const LoaderMotion& loader, const HullMotion& hull, const Pose& mount);
+  /// `hull_meshes_H`: one for each of the shapes of `change`, in the ship's place of when the map was made.
+  /// Motions and change must outlive the world.
+  BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const ShapeChange& change,
+             const LoaderMotion& loader, const HullMotion& hull, const Pose& mount,
+             const std::optional<Passage>& crane);
 
   [[nodiscard]] Sweep sweep(double begin, double end) const;
 
@@ -37,15 +50,26 @@ class BerthWorld {
   /// T_W_L at time t by the true joints.
   [[nodiscard]] Pose T_W_L(double t) const;
 
+  /// A ray's origin and direction in W, at time t within the sweep.
+  [[nodiscard]] static std::pair<Point, Point> ray_W(const Sweep& sweep, double t, const Point& origin_L,
+                                                     const Point& direction_L);
+
  private:
-  using Placement = std::array<Eigen::Matrix<float, 3, 4>, Sweep::kBodies>;
+  using Affine = Eigen::Matrix<float, 3, 4>;
+  using Placement = std::array<Affine, Sweep::kBodies>;
+  enum Body : std::size_t { kBoom, kHull, kBerth, kPortal, kWater, kCrane };
+
+  [[nodiscard]] static Affine between(const Sweep& sweep, double t, std::size_t body);
   [[nodiscard]] Placement placement(double t) const;
+  [[nodiscard]] const RayScene* scene(std::size_t body, std::size_t shape) const;
   /// Is there no water at a point of the river's level because the hull is below it (inside a hold)?
-  [[nodiscard]] bool displaced(const Sweep& sweep, float s, const Point& p_L) const;
+  [[nodiscard]] bool displaced(const Sweep& sweep, double t, std::size_t shape, const Point& p_L) const;
 
-  static constexpr std::size_t kHull = 1;  // boom, hull, berth, portal
-
-  std::array<RayScene, Sweep::kBodies> bodies_;
+  RayScene boom_, berth_, portal_, water_;
+  std::vector<RayScene> hulls_;  // one a shape
+  std::optional<RayScene> crane_;
+  Passage passage_;
+  const ShapeChange* change_;
   const LoaderMotion* loader_;
   const HullMotion* hull_;
   Pose mount_;

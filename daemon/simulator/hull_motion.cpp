@@ -22,6 +22,12 @@ double run_distance(const Run& run, double t) {
   return run.distance - 0.5 * run.acceleration * left * left;
 }
 
+std::optional<double> under_way(const HullMotionConfig& motion) {
+  for (const Course& course : motion.courses)
+    if (course.direction.head<2>().norm() > 0.0) return course.run.start;
+  return std::nullopt;
+}
+
 HullMotion::Waves HullMotion::waves(const Swing& swing, std::uint64_t seed, std::uint64_t stream) {
   RandomStream random(seed, stream);
   Waves result{};
@@ -56,11 +62,16 @@ HullPose HullMotion::pose(double t) const {
   HullPose pose{config_.start_displacement, config_.start_rpy};
   pose.displacement += Eigen::Vector3d(swing[0], swing[1], swing[2] - config_.draft_rate * t);
   pose.rpy += Eigen::Vector3d(swing[3], swing[4], swing[5]);
-  const double way = run_distance(config_.run, t);
-  pose.displacement += way * config_.run_direction;
-  if (config_.run.speed > 0.0) pose.rpy.z() += way / config_.run.speed * config_.run_yaw_rate;
+  pose.displacement.z() -= ebb(t);
+  for (const Course& course : config_.courses) {
+    const double way = run_distance(course.run, t);
+    pose.displacement += way * course.direction;
+    pose.rpy += way / course.run.speed * course.rpy_rate;
+  }
   return pose;
 }
+
+double HullMotion::ebb(double t) const { return run_distance(config_.ebb, t); }
 
 Pose HullMotion::transform(const HullPose& pose) const {
   Pose T = Pose::Identity();

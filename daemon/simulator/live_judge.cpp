@@ -7,9 +7,9 @@
 namespace hulltrack {
 
 std::optional<Nanoseconds> LiveJudge::departure() const {
-  const Run& run = berth_->hull().config().run;
-  if (run.distance <= 0.0) return std::nullopt;
-  return nanoseconds_from_ms(run.start * 1e3);
+  const auto start = under_way(berth_->hull().config());
+  if (!start) return std::nullopt;
+  return nanoseconds_from_ms(*start * 1e3);
 }
 
 LiveJudge::Offset LiveJudge::offset(const WriteBlock& block, Nanoseconds time) const {

@@ -9,6 +9,7 @@ namespace {
 constexpr float kBoomTip = 21.5F;   // x in B
 constexpr float kChuteX = 20.0F;    // x in B
 constexpr float kChuteEnd = -9.0F;  // z in B
+constexpr float kSpout = 0.6F;      // m below that
 constexpr float kChuteRadius = 0.6F;
 constexpr float kBoomHalfWidth = 0.9F;
 constexpr float kBoomTop = 1.7F;
@@ -42,6 +43,25 @@ LoaderLimits loader_limits() {
           .luff = {radians(-5.0), radians(5.0), radians(0.28), radians(0.25), radians(0.6), radians(4.0)}};
 }
 
+LoaderLimits hurried_loader_limits() {
+  LoaderLimits limits = loader_limits();
+  limits.travel = {limits.travel.low, limits.travel.high, 0.5, 0.2, 6.0, 30.0};
+  limits.slew = {limits.slew.low, limits.slew.high, radians(1.8), radians(0.6), radians(10.0), radians(60.0)};
+  limits.shortest_pour = 0.2;
+  limits.longest_pour = 1.5;
+  limits.hurries = true;
+  return limits;
+}
+
+LoaderLimits passing_loader_limits() {
+  LoaderLimits limits = loader_limits();
+  limits.travel = {-15.0, 15.0, 0.5, 0.2, 1.0, 30.0};
+  limits.passes = true;
+  return limits;
+}
+
+Point chute_end_B() { return {kChuteX, 0.0F, kChuteEnd - kSpout}; }
+
 TriangleMesh boom_mesh() {
   TriangleMesh mesh;
   const auto beam = [&](const Point& min, const Point& max) {
@@ -59,7 +79,7 @@ TriangleMesh boom_mesh() {
           Material::dark_steel);
   add_box(mesh, {-7.0F, -0.9F, -0.4F}, {-4.5F, 0.9F, 2.6F}, Material::concrete);  // counterweight
   add_cylinder(mesh, {kChuteX, 0.0F, 1.2F}, {kChuteX, 0.0F, kChuteEnd}, kChuteRadius, 20, Material::steel);
-  add_box(mesh, {kChuteX - 0.8F, -0.8F, kChuteEnd - 0.6F}, {kChuteX + 0.8F, 0.8F, kChuteEnd},
+  add_box(mesh, {kChuteX - 0.8F, -0.8F, kChuteEnd - kSpout}, {kChuteX + 0.8F, 0.8F, kChuteEnd},
           Material::dark_steel);
   return mesh;
 }

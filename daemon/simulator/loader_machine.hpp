@@ -20,6 +20,15 @@ namespace hulltrack {
 /// Speeds and accelerations of a loader of this size; a working range that keeps the chute over the holds.
 [[nodiscard]] LoaderLimits loader_limits();
 
+/// The same machine at the upper end of what such loaders do, travelling and slewing nearly all the time.
+[[nodiscard]] LoaderLimits hurried_loader_limits();
+
+/// The same machine on a pass along the whole ship.
+[[nodiscard]] LoaderLimits passing_loader_limits();
+
+/// Where the ore leaves the chute.
+[[nodiscard]] Point chute_end_B();
+
 /// Boom and chute, in B.
 [[nodiscard]] TriangleMesh boom_mesh();
 

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "daemon/simulator/random.hpp"
 
 namespace hulltrack {
 namespace {
 
-constexpr double kFirstMove = 3.0;     // s of rest at the beginning
-constexpr double kShortestPour = 1.5;  // s between two moves
-constexpr double kLongestPour = 7.0;
+constexpr double kFirstMove = 3.0;  // s of rest at the beginning
 
 /// A target inside the limits that is one move away.
 double draw_target(const AxisLimits& axis, double from, RandomStream& random) {
@@ -33,6 +32,7 @@ constexpr std::array<Step, 5> kSteps = {{{false, true, false},
                                          {true, false, false},
                                          {false, false, true},
                                          {true, true, false}}};
+constexpr Step kHurriedStep = {true, true, false};
 
 }  // namespace
 
@@ -66,6 +66,7 @@ LoaderMotion::LoaderMotion(const LoaderLimits& limits, double duration, std::uin
   const auto inside = [&](const AxisLimits& axis) { return random.uniform(axis.low, axis.high); };
   start_ = {inside(limits.travel), inside(limits.slew), inside(limits.luff)};
   Joints now = start_;
+  if (limits.passes) plan_passes(limits.travel, duration);
   double t = kFirstMove;
   std::size_t step = random.bits() % kSteps.size();
   while (t < duration) {
@@ -76,18 +77,36 @@ LoaderMotion::LoaderMotion(const LoaderLimits& limits, double duration, std::uin
       position = target;
       end = std::max(end, t + track.back().duration());
     };
-    const Step& now_moves = kSteps.at(step++ % kSteps.size());
+    const Step& now_moves = limits.hurries ? kHurriedStep : kSteps.at(step++ % kSteps.size());
     if (now_moves.slew) move(slew_, limits.slew, now.theta_r);
     if (now_moves.luff) move(luff_, limits.luff, now.theta_p);
-    if (now_moves.travel) move(travel_, limits.travel, now.d_x);
-    t = end + random.uniform(kShortestPour, kLongestPour);
+    if (now_moves.travel && !limits.passes) move(travel_, limits.travel, now.d_x);
+    t = end + random.uniform(limits.shortest_pour, limits.longest_pour);
   }
+}
+
+/// From the end of the range that is nearer to the start.
+void LoaderMotion::plan_passes(const AxisLimits& axis, double duration) {
+  const bool from_low = start_.d_x - axis.low < axis.high - start_.d_x;
+  double from = from_low ? axis.low : axis.high;
+  double to = from_low ? axis.high : axis.low;
+  start_.d_x = from;
+  for (double t = kFirstMove; t < duration; t += travel_.back().duration(), std::swap(from, to))
+    travel_.push_back({t, from, to, axis.speed, axis.acceleration});
 }
 
 double LoaderMotion::position(const Track& track, double start, double t) {
   const auto next = std::upper_bound(track.begin(), track.end(), t,
                                      [](double time, const Move& move) { return time < move.start; });
   return next == track.begin() ? start : std::prev(next)->at(t);
+}
+
+bool LoaderMotion::at_rest(double t) const {
+  const auto rests = [t](const Track& track) {
+    return std::none_of(track.begin(), track.end(),
+                        [t](const Move& move) { return t > move.start && t < move.start + move.duration(); });
+  };
+  return rests(travel_) && rests(slew_) && rests(luff_);
 }
 
 Joints LoaderMotion::at(double t) const {

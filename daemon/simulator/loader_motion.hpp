@@ -20,8 +20,12 @@ struct AxisLimits {
   double shortest_move, longest_move;  // of one move
 };
 
+/// Where a loader works and how it goes about it.
 struct LoaderLimits {
   AxisLimits travel, slew, luff;
+  double shortest_pour = 1.5, longest_pour = 7.0;  // s between two moves
+  bool hurries = false;                            // every move is one of travel and slew together
+  bool passes = false;  // travels to and fro over the whole range without a stop, whatever the boom does
 };
 
 class LoaderMotion {
@@ -33,6 +37,8 @@ class LoaderMotion {
   explicit LoaderMotion(const Joints& parked) : start_(parked) {}
 
   [[nodiscard]] Joints at(double t) const;
+  /// Do all axes stand still? That is when it pours.
+  [[nodiscard]] bool at_rest(double t) const;
 
  private:
   struct Move {
@@ -44,6 +50,7 @@ class LoaderMotion {
   };
   using Track = std::vector<Move>;
   static double position(const Track& track, double start, double t);
+  void plan_passes(const AxisLimits& axis, double duration);
 
   Joints start_;
   Track travel_, slew_, luff_;

@@ -1,9 +1,10 @@
 // What does the loader's PLC present at time t? Encoders of finite resolution, latched once a PLC cycle.
 //
 // Travel is read by a code rail (1 mm), slew and luff by single-turn encoders. A value is as old as the
-// encoder's delay plus the time since the cycle began: on average kMeanLatency, which is what a
-// configuration states as plc.latency_ms; the rest is jitter of half a cycle either way.
-// Seconds from the first firing; m and rad. Pure: any time from any thread.
+// encoder's delay plus the time since the cycle began, plus what a gateway between the PLC and us takes: on
+// average mean_latency(), which is what a configuration states as plc.latency_ms; the rest is jitter of half
+// a cycle either way and the gateway's own. Seconds from the first firing; m and rad. Pure: any time from any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +19,13 @@ struct EncoderConfig {
   int luff_bits = 17;
 };
 
+/// Values of a PLC cycle are to be read this much after the cycle began, the same for all of them up to
+/// `jitter` either way. Precondition: jitter less than half a cycle, so that none overtakes another.
+struct Gateway {
+  double delay = 0.0;   // s
+  double jitter = 0.0;  // s
+};
+
 struct PlcPresented {
   Joints joints;
   std::uint16_t heartbeat;  // +1 a cycle
@@ -27,21 +35,23 @@ class PlcModel {
  public:
   static constexpr double kCycle = 0.011;         // s; not in step with a poll of 20 ms
   static constexpr double kEncoderDelay = 0.003;  // s, measured to latched
-  static constexpr double kMeanLatency = kEncoderDelay + 0.5 * kCycle;
 
   /// `loader` must outlive the model. `seed` sets where in its cycle the PLC is at time 0.
-  PlcModel(const LoaderMotion& loader, const EncoderConfig& encoders, std::uint64_t seed);
+  PlcModel(const LoaderMotion& loader, const EncoderConfig& encoders, std::uint64_t seed,
+           const Gateway& gateway = {});
 
+  [[nodiscard]] double mean_latency() const { return kEncoderDelay + 0.5 * kCycle + gateway_.delay; }
   [[nodiscard]] PlcPresented at(double t) const;
 
-  /// When cycle `number` begins; may be negative. Its values are presented from then on.
-  [[nodiscard]] double cycle_begin(std::int64_t number) const {
-    return static_cast<double>(number) * kCycle - phase_;
-  }
+  /// From when on the values of cycle `number` are presented; it may be negative.
+  [[nodiscard]] double presented_from(std::int64_t number) const;
+  [[nodiscard]] const Gateway& gateway() const { return gateway_; }
 
  private:
   const LoaderMotion* loader_;
   EncoderConfig encoders_;
+  std::uint64_t seed_;
+  Gateway gateway_;
   double phase_;  // s, in [0, kCycle)
 };
 

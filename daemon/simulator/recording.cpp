@@ -142,7 +142,7 @@ std::vector<TruthRow> recorded_truth(const SimulatedBerth& berth) {
   const Nanoseconds end = berth.frames() * SimulatedBerth::kFramePeriod + kMargin;
   for (Nanoseconds time = -kMargin; time <= end; time += kTruthPeriod) {
     const HullPose pose = berth.truth(time);
-    rows.push_back({utc_ns(time), pose.displacement, in_degrees(pose.rpy)});
+    rows.push_back({utc_ns(time), pose.displacement, in_degrees(pose.rpy), berth.bend(time)});
   }
   return rows;
 }

@@ -1,89 +1,283 @@
 #include "daemon/simulator/scenario.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <numbers>
+
+#include "daemon/simulator/ship_conduct.hpp"
 
 namespace hulltrack {
 namespace {
 
-constexpr double kPerHour = 1.0 / 3600.0;
-constexpr double kFramePeriod = 0.1;  // s
-constexpr double kForEver = std::numeric_limits<double>::infinity();
+using conduct::leaving;
+using conduct::listing;
+using conduct::loaded;
+using conduct::sheltered;
+using conduct::shifted;
+using conduct::uneasy;
+using conduct::with;
+using Eigen::Vector3d;
 
-/// A river berth out of the swell: the low end of what sheltered berths see.
-HullMotionConfig sheltered() {
-  HullMotionConfig motion;
-  motion.surge = {0.05, 50.0, 150.0};
-  motion.sway = {0.05, 50.0, 150.0};
-  motion.heave = {0.01, 6.0, 15.0};
-  motion.roll = {radians(0.10), 6.0, 15.0};
-  motion.pitch = {radians(0.03), 6.0, 15.0};
-  motion.yaw = {radians(0.03), 50.0, 150.0};
-  motion.draft_rate = 1.0 * kPerHour;
-  motion.start_displacement = {0.03, -0.02, -0.04};
-  motion.start_rpy = {radians(0.04), radians(-0.02), radians(0.03)};
-  return motion;
+constexpr double kHatchPitch = 22.6;  // m, second to third hatch of berth_ship()
+constexpr double kWholeWindow = 2.0 * std::numbers::pi;
+constexpr HullShape kEmpty{};
+constexpr HullShape kNearlyFull{.fill = 0.95};
+
+HullMotionConfig sinking() {
+  HullMotionConfig motion = uneasy();
+  motion.draft_rate = 0.0;
+  motion.ebb = {0.0, 0.02, 0.01, 2.8};
+  return with(motion, {shifted(0.0, {0.0, 0.0, -4.2}, 0.03, 0.015)});
 }
 
-/// Long waves and passing ships at the upper end of a sheltered berth's range.
-HullMotionConfig uneasy() {
-  HullMotionConfig motion = sheltered();
-  motion.surge = {0.30, 50.0, 150.0};
-  motion.sway = {0.20, 30.0, 120.0};
-  motion.heave = {0.05, 6.0, 15.0};
-  motion.roll = {radians(0.50), 6.0, 15.0};
-  motion.pitch = {radians(0.10), 6.0, 15.0};
-  motion.yaw = {radians(0.15), 50.0, 150.0};
-  return motion;
+/// Loading with everything that a shift brings but a change of hatch.
+HullMotionConfig whole_shift() {
+  HullMotionConfig motion = uneasy();
+  motion.draft_rate = 0.0;
+  motion.ebb = {0.0, 0.004, 0.002, 1.2};
+  return with(
+      motion,
+      {shifted(0.0, {0.0, 0.0, -2.4}, 0.008, 0.004), listing(20.0, 80.0, {radians(0.8), 0.0, 0.0}),
+       listing(60.0, 150.0, {0.0, radians(-0.5), 0.0}), listing(140.0, 100.0, {radians(-1.4), 0.0, 0.0})});
 }
 
-HullMotionConfig departing() {
-  HullMotionConfig motion = sheltered();
-  constexpr int kDepartureFrame = 800;                    // Guo 2025, 3.1
-  motion.run_direction = Eigen::Vector3d(0.8, 0.6, 0.0);  // ahead and off the quay
-  motion.run = {kDepartureFrame * kFramePeriod, 1.5, 0.08, kForEver};
-  motion.run_yaw_rate = radians(0.3);
-  return motion;
+Weather rain(double false_share, double drop_out, double range_sigma, const Spells& when = {}) {
+  return {.when = when, .false_share = false_share, .drop_out = drop_out, .range_sigma = range_sigma};
 }
 
-HullMotionConfig still() { return {}; }
-
-/// Hours of loading since the map was made: deeper, down by the stern, heeled towards the quay.
-HullMotionConfig loaded() {
-  HullMotionConfig motion = sheltered();
-  motion.draft_rate = 1.3 * kPerHour;
-  motion.start_displacement = {0.05, -0.03, -0.60};
-  motion.start_rpy = {radians(0.50), radians(-0.30), radians(0.02)};
-  return motion;
+void add_moored(std::vector<Scenario>& all) {
+  all.push_back(
+      {.name = "berth",
+       .sentence =
+           "The paper's test: quietly moored in a sheltered river berth while loading, departs at frame 800.",
+       .frames = 869,  // Guo 2025, 3.1
+       .motion = with(sheltered(), {leaving(80.0, {0.8, 0.6, 0.0}, 1.5, 0.08, radians(0.3))})});
+  all.push_back({.name = "static",
+                 .sentence = "The hull lies still, exactly where the map was made; only the loader moves.",
+                 .frames = 200,
+                 .motion = {},
+                 .at_first = kEmpty});
+  all.push_back({.name = "mooring",
+                 .sentence = "The ship ranges at its lines: surge 0.3 m, sway 0.2 m, roll half a degree.",
+                 .frames = 300,
+                 .motion = uneasy()});
+  all.push_back(
+      {.name = "loaded",
+       .sentence =
+           "Well into loading: 0.6 m deeper than in the map, trimmed and heeled, still sinking 1.3 m/h.",
+       .frames = 150,
+       .motion = loaded(),
+       .at_first = {.fill = 0.8}});
+  all.push_back(
+      {.name = "draft",
+       .sentence =
+           "From light to 7 m deeper at 0.05 m/s: 4.2 m of cargo and 2.8 m of ebb, ranging at the lines.",
+       .frames = 1420,
+       .motion = sinking(),
+       .at_first = kEmpty,
+       .at_last = kNearlyFull});
+  all.push_back({.name = "heel",
+                 .sentence = "Listed to 3 deg off the quay, over to 3 deg towards it, and back upright.",
+                 .frames = 460,
+                 .motion = with(sheltered(), {listing(2.0, 12.0, {radians(3.0), 0.0, 0.0}),
+                                              listing(14.0, 20.0, {radians(-6.0), 0.0, 0.0}),
+                                              listing(34.0, 12.0, {radians(3.0), 0.0, 0.0})})});
+  all.push_back({.name = "trim",
+                 .sentence = "Trimmed by 0.9 deg down by the stern, then by the head.",
+                 .frames = 300,
+                 .motion = with(sheltered(), {listing(2.0, 10.0, {0.0, radians(-0.9), 0.0}),
+                                              listing(13.0, 16.0, {0.0, radians(1.8), 0.0})})});
 }
 
-/// The ship is warped along the quay to the next hatch.
-HullMotionConfig warping() {
-  HullMotionConfig motion = sheltered();
-  constexpr double kHatchPitch = 22.6;  // m, second to third hatch of berth_ship()
-  motion.run = {30.0, 0.2, 0.02, kHatchPitch};
-  return motion;
+void add_jerked(std::vector<Scenario>& all) {
+  all.push_back({.name = "surge-jerk",
+                 .sentence = "A passing ship's wave: 1 m ahead within 10 s, at most at 0.2 m/s, and back.",
+                 .frames = 300,
+                 .motion = with(sheltered(), {shifted(5.0, {1.0, 0.0, 0.0}, 0.2, 0.04),
+                                              shifted(17.0, {-1.0, 0.0, 0.0}, 0.2, 0.04)})});
+  all.push_back({.name = "surge-jerk-fast",
+                 .sentence = "The same within 5 s, for a second faster than 0.3 m/s, and back in 10 s.",
+                 .frames = 300,
+                 .motion = with(sheltered(), {shifted(8.0, {1.0, 0.0, 0.0}, 0.4, 0.16),
+                                              shifted(17.0, {-1.0, 0.0, 0.0}, 0.2, 0.04)})});
+  all.push_back(
+      {.name = "passing-ship",
+       .sentence = "A ship passes: drawn 0.8 m ahead, 0.4 m astern and 0.2 m off the quay within a minute.",
+       .frames = 620,
+       .motion =
+           with(sheltered(),
+                {shifted(4.0, {0.8, 0.0, 0.0}, 0.05, 0.01), shifted(14.0, {0.0, 0.2, 0.0}, 0.02, 0.005),
+                 shifted(26.0, {-1.2, 0.0, 0.0}, 0.08, 0.01), shifted(36.0, {0.0, -0.2, 0.0}, 0.02, 0.005),
+                 shifted(46.0, {0.4, 0.0, 0.0}, 0.05, 0.01)})});
+  all.push_back({.name = "shift",
+                 .sentence = "After 30 s the ship is warped along the quay by one hatch at 0.2 m/s.",
+                 .frames = 1560,
+                 .motion = with(sheltered(), {shifted(30.0, {kHatchPitch, 0.0, 0.0}, 0.2, 0.02)})});
+}
+
+void add_blinded(std::vector<Scenario>& all) {
+  all.push_back(
+      {.name = "warp-blind",
+       .sentence = "Warped by one hatch at 0.3 m/s while the window is covered; it is uncovered at 87 s.",
+       .frames = 950,
+       .motion = with(sheltered(), {shifted(3.0, {kHatchPitch, 0.0, 0.0}, 0.3, 0.06)}),
+       .cover = {.when = {.first = 2.0, .length = 85.0}, .width = kWholeWindow}});
+  all.push_back(
+      {.name = "drift-blind",
+       .sentence = "Drifts 6 m ahead, 0.8 m off and 1.5 m down during a minute with the window covered.",
+       .frames = 720,
+       .motion = with(sheltered(), {shifted(5.0, {6.0, 0.8, -1.5}, 0.2, 0.02)}),
+       .cover = {.when = {.first = 3.0, .length = 60.0}, .width = kWholeWindow}});
+  all.push_back({.name = "blind-short",
+                 .sentence = "The window is covered from 4 to 14 s; the ship stays where she is.",
+                 .frames = 200,
+                 .motion = sheltered(),
+                 .cover = {.when = {.first = 4.0, .length = 10.0}, .width = kWholeWindow}});
+  all.push_back({.name = "blocked-window",
+                 .sentence = "Half of the field of view goes blind at 8 s and sees again at 23 s.",
+                 .frames = 300,
+                 .motion = sheltered(),
+                 .cover = {.when = {.first = 8.0, .length = 15.0}, .width = 0.5 * kWholeWindow}});
+}
+
+void add_absent(std::vector<Scenario>& all) {
+  HullMotionConfig at_sea = sheltered();
+  at_sea.start_displacement = {0.0, 2000.0, 0.0};
+  all.push_back({.name = "gone",
+                 .sentence = "No ship at all: the mapped one is at sea.",
+                 .frames = 100,
+                 .motion = at_sea,
+                 .mapped_ship = false});
+  all.push_back({.name = "depart-astern",
+                 .sentence = "Leaves astern along the quay after 6 s.",
+                 .frames = 200,
+                 .motion = with(sheltered(), {leaving(6.0, {-1.0, 0.0, 0.0}, 1.0, 0.05, 0.0)})});
+  all.push_back({.name = "depart-sideways",
+                 .sentence = "Pushed off the quay after 6 s, at 0.2 m/s at first, then faster.",
+                 .frames = 260,
+                 .motion = with(sheltered(), {leaving(6.0, {0.0, 1.0, 0.0}, 0.2, 0.04, 0.0),
+                                              leaving(14.0, {0.1, 0.995, 0.0}, 0.8, 0.05, radians(0.2))})});
+  all.push_back(
+      {.name = "creep",
+       .sentence = "Creeps off the quay at 0.15 m/s, slower than any alarm, until she is 3.5 m off.",
+       .frames = 330,
+       .motion = with(sheltered(), {shifted(5.0, {0.0, 3.5, 0.0}, 0.15, 0.05)})});
+}
+
+void add_strangers(std::vector<Scenario>& all) {
+  all.push_back({.name = "wrong-ship",
+                 .sentence = "Another ship of the same trade lies at the berth than the one in the map.",
+                 .frames = 150,
+                 .motion = sheltered(),
+                 .ship_at_berth = stranger_ship(),
+                 .mapped_ship = false});
+  const auto add_sister = [&](std::string_view name, std::string_view sentence, const ShipDesign& ship) {
+    all.push_back({.name = name,
+                   .sentence = sentence,
+                   .frames = 120,
+                   .motion = sheltered(),
+                   .ship_at_berth = ship,
+                   .mapped_ship = false});
+  };
+  add_sister("sister-hatch", "A sister ship; her hatches lie 12 to 28 cm farther forward or aft.",
+             sister_with_other_hatch_places());
+  add_sister("sister-coaming", "A sister ship; her coamings are 12 to 30 cm higher or lower.",
+             sister_with_other_coamings());
+  add_sister("sister-width",
+             "A sister ship; her hatches are 15 to 30 cm longer or shorter, wider or narrower.",
+             sister_with_other_openings());
+}
+
+void add_changed(std::vector<Scenario>& all) {
+  all.push_back(
+      {.name = "covers",
+       .sentence = "Two hatches have been closed since the map was made, two folded at the other end.",
+       .frames = 150,
+       .motion = sheltered(),
+       .ship_at_berth = ship_with_moved_covers()});
+  all.push_back({.name = "cargo",
+                 .sentence = "Empty holds fill up: from a first thin layer to nearly full.",
+                 .frames = 300,
+                 .motion = sheltered(),
+                 .at_first = kEmpty,
+                 .at_last = kNearlyFull});
+  const auto add_bent = [&](std::string_view name, std::string_view sentence, double bend) {
+    all.push_back({.name = name,
+                   .sentence = sentence,
+                   .frames = 660,
+                   .motion = sheltered(),
+                   .at_first = {.fill = 0.35, .bend = 0.6 * bend},
+                   .at_last = {.fill = 0.5, .bend = bend},
+                   .loader = passing_loader_limits()});
+  };
+  add_bent("hog", "Bent upwards by 0.12, then 0.2 m amidships; the loader passes along the whole ship.",
+           -0.2);
+  add_bent("sag", "Bent downwards by 0.12, then 0.2 m amidships; the loader passes along the whole ship.",
+           0.2);
+}
+
+void add_seen_badly(std::vector<Scenario>& all) {
+  const auto add = [&](std::string_view name, std::string_view sentence, int frames, const Weather& weather) {
+    all.push_back(
+        {.name = name, .sentence = sentence, .frames = frames, .motion = sheltered(), .weather = weather});
+  };
+  add("rain", "10 % of the beams end on drops, 20 % are lost, range noise 3 cm.", 300, rain(0.1, 0.2, 0.03));
+  add("rain-heavy", "30 % of the beams end on drops, 60 % are lost, range noise 5 cm.", 200,
+      rain(0.3, 0.6, 0.05));
+  add("fog", "Nothing is seen beyond 30 m, and less the farther it is.", 200,
+      {.when = {}, .visibility = 30.0});
+  all.push_back({.name = "dust",
+                 .sentence = "A plume of dust under the chute comes and goes with the pouring.",
+                 .frames = 400,
+                 .motion = sheltered(),
+                 .dust = 0.8});
+  all.push_back({.name = "crane",
+                 .sentence = "A mobile crane drives past on the quay's edge, its load over the ship's deck.",
+                 .frames = 340,
+                 .motion = sheltered(),
+                 .crane = Passage{-28.0, {1.0, 1.8, 0.6, 58.0}}});
+}
+
+void add_hurried(std::vector<Scenario>& all) {
+  all.push_back(
+      {.name = "fast-travel",
+       .sentence =
+           "The loader travels at 0.5 m/s and slews at 1.8 deg/s nearly all the time; the PLC lags 25 ms.",
+       .frames = 400,
+       .motion = sheltered(),
+       .loader = hurried_loader_limits(),
+       .gateway = {.delay = 0.0165, .jitter = 0.005}});
+  all.push_back({.name = "night-shift",
+                 .sentence = "Five minutes of everything: ebb, cargo, list, trim, ranging, showers, a window "
+                             "wiped now and then.",
+                 .frames = 3000,
+                 .motion = whole_shift(),
+                 .at_first = {.fill = 0.1},
+                 .at_last = {.fill = 0.8},
+                 .weather = rain(0.05, 0.1, 0.025, {.first = 30.0, .length = 25.0, .period = 70.0}),
+                 .cover = {.when = {.first = 62.0, .length = 4.0, .period = 60.0}, .width = kWholeWindow},
+                 .loader = hurried_loader_limits(),
+                 .gateway = {.delay = 0.0165, .jitter = 0.005}});
 }
 
 std::vector<Scenario> make_scenarios() {
-  return {
-      {"berth",
-       "The paper's test: quietly moored in a sheltered river berth while loading, departs at frame 800.",
-       869, departing(), berth_ship(), 0.35},
-      {"static", "The hull lies still, exactly where the map was made; only the loader moves.", 300, still(),
-       berth_ship(), 0.0},
-      {"mooring", "The ship ranges at its lines: surge 0.3 m, sway 0.2 m, roll half a degree.", 1800,
-       uneasy(), berth_ship(), 0.35},
-      {"draft", "Well into loading: 0.6 m deeper than in the map, trimmed and heeled, still sinking 1.3 m/h.",
-       1800, loaded(), berth_ship(), 0.8},
-      {"shift", "After 30 s the ship is warped along the quay by one hatch at 0.2 m/s.", 1800, warping(),
-       berth_ship(), 0.35},
-      {"wrong-ship", "Another ship of the same trade lies at the berth than the one in the map.", 300,
-       sheltered(), stranger_ship(), 0.35},
-  };
+  std::vector<Scenario> all;
+  add_moored(all);
+  add_jerked(all);
+  add_blinded(all);
+  add_absent(all);
+  add_strangers(all);
+  add_changed(all);
+  add_seen_badly(all);
+  add_hurried(all);
+  return all;
 }
 
 }  // namespace
+
+bool is_clear(const Scenario& scenario) {
+  return scenario.weather.when.length == 0.0 && scenario.cover.when.length == 0.0 && scenario.dust == 0.0;
+}
 
 const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all = make_scenarios();

@@ -65,6 +65,8 @@ double received_power(const RayHit& hit) {
   return reflectivity(hit.material) * static_cast<double>(hit.cos_incidence) / (range * range);
 }
 
+Echoes only(const sim::VelodyneReturn& echo) { return {echo, echo}; }
+
 }  // namespace
 
 const std::vector<SensorTraits>& simulated_sensors() {
@@ -90,8 +92,8 @@ Point ray_within_beam(const SensorTraits& sensor, const Point& direction, Random
   return (direction + a * across + e * along).normalized();
 }
 
-sim::VelodyneReturn measure(const SensorTraits& sensor, const RayHit& middle,
-                            const std::optional<RayHit>& other, RandomStream& random) {
+Echoes measure(const SensorTraits& sensor, const RayHit& middle, const std::optional<RayHit>& other,
+               RandomStream& random) {
   constexpr double kPulseLength = 0.9;  // m of range within which two echoes merge (6 ns)
   constexpr double kSpeckle = 0.25;     // sigma of the received power's logarithm
   constexpr double kDarkReflectivity = 0.10;
@@ -104,17 +106,24 @@ sim::VelodyneReturn measure(const SensorTraits& sensor, const RayHit& middle,
   const double other_power = other ? (1.0 - share) * received_power(*other) : 0.0;
   const double power = (middle_power + other_power) * speckle;
   const double faintest = kDarkReflectivity / (sensor.range_of_dark * sensor.range_of_dark);
-  if (power < faintest) return {};
-
+  const auto echo = [&](double surface, double its_power) -> sim::VelodyneReturn {
+    const double range = surface + noise;
+    if (its_power < faintest || range < sensor.min_range) return {};
+    return {range, static_cast<std::uint8_t>(std::clamp(100.0 * its_power * range * range, 1.0, 100.0))};
+  };
   const auto middle_range = static_cast<double>(middle.distance);
   const double other_range = other ? static_cast<double>(other->distance) : middle_range;
-  double range = middle_power >= other_power ? middle_range : other_range;
-  if (std::abs(middle_range - other_range) < kPulseLength)
-    range = (middle_power * middle_range + other_power * other_range) / (middle_power + other_power);
-  range += noise;
-  if (range < sensor.min_range) return {};
-  const double brightness = std::clamp(100.0 * power * range * range, 1.0, 100.0);
-  return {range, static_cast<std::uint8_t>(brightness)};
+  if (std::abs(middle_range - other_range) < kPulseLength) {
+    const double range =
+        (middle_power * middle_range + other_power * other_range) / (middle_power + other_power);
+    return only(echo(range, power));
+  }
+  const bool middle_wins = middle_power >= other_power;
+  const auto winner = echo(middle_wins ? middle_range : other_range, power);
+  const auto loser =
+      echo(middle_wins ? other_range : middle_range, (middle_wins ? other_power : middle_power) * speckle);
+  if (winner.range <= 0.0 || loser.range <= 0.0) return only(winner);
+  return winner.range < loser.range ? Echoes{winner, loser, false} : Echoes{loser, winner, true};
 }
 
 }  // namespace hulltrack

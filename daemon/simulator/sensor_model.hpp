@@ -41,9 +41,17 @@ struct SensorTraits {
 /// A direction within the beam around `direction` (unit), drawn evenly over its cross-section.
 [[nodiscard]] Point ray_within_beam(const SensorTraits& sensor, const Point& direction, RandomStream& random);
 
-/// What the receiver reports of a beam whose middle and whose other ray met these surfaces. (A beam whose
-/// middle meets nothing returns nothing.)
-[[nodiscard]] sim::VelodyneReturn measure(const SensorTraits& sensor, const RayHit& middle,
-                                          const std::optional<RayHit>& other, RandomStream& random);
+/// The echoes of one pulse: at most two, the same twice when there is only one. Range 0: none.
+struct Echoes {
+  sim::VelodyneReturn first, last;
+  bool last_is_strongest = true;
+
+  [[nodiscard]] const sim::VelodyneReturn& strongest() const { return last_is_strongest ? last : first; }
+};
+
+/// The echoes of a beam whose middle and whose other ray met these surfaces. (A beam whose middle meets
+/// nothing returns nothing.)
+[[nodiscard]] Echoes measure(const SensorTraits& sensor, const RayHit& middle,
+                             const std::optional<RayHit>& other, RandomStream& random);
 
 }  // namespace hulltrack

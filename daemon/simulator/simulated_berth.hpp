@@ -16,6 +16,7 @@
 #include "core/base/result.hpp"
 #include "core/tracking/tracker_config.hpp"
 #include "daemon/simulator/berth_world.hpp"
+#include "daemon/simulator/dust_plume.hpp"
 #include "daemon/simulator/plc_model.hpp"
 #include "daemon/simulator/scenario.hpp"
 #include "daemon/simulator/sensor_model.hpp"
@@ -32,6 +33,7 @@ struct SimulationOptions {
   std::optional<double> leave_at =
       std::nullopt;  // s: the ship gets under way then, not when the scenario says
   EncoderConfig encoders = {};
+  ReturnMode return_mode = ReturnMode::strongest;  // strongest, last or dual
 };
 
 class SimulatedBerth {
@@ -54,22 +56,29 @@ class SimulatedBerth {
   /// Time of the datagram's last firing: when it is sent.
   [[nodiscard]] Nanoseconds sent(std::uint64_t packet) const { return encoder_.last_firing(packet); }
   [[nodiscard]] Packet packet(std::uint64_t number) const;
-  /// What the sensor measured for each firing of the datagram, in wire order; range 0 = nothing.
+  /// What the sensor measured for each firing of the datagram, in wire order; range 0 = nothing. With dual
+  /// return two a firing, as the encoder wants them.
   [[nodiscard]] std::vector<sim::VelodyneReturn> returns(std::uint64_t number) const;
   [[nodiscard]] const sim::VelodyneEncoder& encoder() const { return encoder_; }
 
+  /// Where the reference point is and how the hull lies there: of a bent hull the tangent frame at that point
+  /// of the ship.
   [[nodiscard]] HullPose truth(Nanoseconds time) const;
+  /// How much the hull is bent since the map was made, see hull_shape.hpp; m.
+  [[nodiscard]] double bend(Nanoseconds time) const;
+  /// Of the hull as if it were not bent: where hull_mesh_H lies.
   [[nodiscard]] Pose T_W_H(Nanoseconds time) const;
   [[nodiscard]] const HullMotion& hull() const { return hull_; }
   [[nodiscard]] Joints true_joints(Nanoseconds time) const;
   [[nodiscard]] PlcPresented plc(Nanoseconds time) const;
-  /// When the PLC's cycle `number` begins, and its values change.
+  [[nodiscard]] const PlcModel& plc_model() const { return plc_; }
+  /// When the values of the PLC's cycle `number` can be read.
   [[nodiscard]] Nanoseconds plc_cycle(std::int64_t number) const;
   [[nodiscard]] const BerthWorld& world() const { return *world_; }
 
-  /// The ship of the map in H, empty; and the ship that really lies there, with its cargo.
+  /// The ship of the map in H, empty; and the ship that really lies there, with its cargo and bend.
   [[nodiscard]] TriangleMesh map_mesh_H() const;
-  [[nodiscard]] TriangleMesh hull_mesh_H() const;
+  [[nodiscard]] TriangleMesh hull_mesh_H(Nanoseconds time = Nanoseconds{0}) const;
   [[nodiscard]] Cloud map() const;
 
   /// What a commissioning engineer would have put into the configuration.
@@ -80,6 +89,13 @@ class SimulatedBerth {
   SimulatedBerth(const SimulationOptions& options, const Scenario& scenario, const SensorTraits& sensor,
                  sim::VelodyneEncoder encoder);
 
+  /// What comes back of one firing from the berth's surfaces, and what of that arrives.
+  [[nodiscard]] Echoes surface(const BerthWorld::Sweep& sweep, const sim::VelodyneFiring& firing,
+                               RandomStream& random) const;
+  [[nodiscard]] Echoes through_air(const BerthWorld::Sweep& sweep, const DustPlume::Now& dust,
+                                   const sim::VelodyneFiring& firing, Echoes echoes,
+                                   RandomStream& random) const;
+
   SimulationOptions options_;
   const Scenario* scenario_;
   const SensorTraits* sensor_;
@@ -87,7 +103,9 @@ class SimulatedBerth {
   sim::VelodyneEncoder encoder_;
   LoaderMotion loader_;
   HullMotion hull_;
+  ShapeChange change_;
   PlcModel plc_;
+  DustPlume dust_;
   std::unique_ptr<BerthWorld> world_;
   std::uint64_t packets_ = 0;
 };

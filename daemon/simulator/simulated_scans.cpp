@@ -39,7 +39,7 @@ Result<std::vector<Scan>> simulated_scans(const SimulatedBerth& berth, int first
 }
 
 std::vector<JointSample> simulated_joint_samples(const SimulatedBerth& berth) {
-  const auto latency = nanoseconds_from_ms(PlcModel::kMeanLatency * 1e3);
+  const auto latency = nanoseconds_from_ms(berth.plc_model().mean_latency() * 1e3);
   std::vector<JointSample> samples;
   std::uint32_t heartbeat = 0;
   for (const PlcCsvRow& row : recorded_plc(berth)) {

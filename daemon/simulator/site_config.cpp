@@ -27,10 +27,12 @@ void put_pose(std::string& text, const char* key, const Pose& T) {
       xyz.z(), rpy.x(), rpy.y(), rpy.z());
 }
 
-void put_plc(std::string& text, const SiteAddresses& addresses) {
+void put_plc(std::string& text, const SiteAddresses& addresses, const PlcModel& plc) {
   put(text, "[plc]\nhost = \"%s\"\nport = %u\n", addresses.plc_host.c_str(), unsigned{addresses.plc_port});
-  put(text, "latency_ms = %.1f   # encoder delay %.0f ms plus half of the PLC's cycle of %.0f ms\n\n",
-      PlcModel::kMeanLatency * 1e3, PlcModel::kEncoderDelay * 1e3, PlcModel::kCycle * 1e3);
+  put(text, "latency_ms = %.1f   # encoder delay %.0f ms plus half of the PLC's cycle of %.0f ms",
+      plc.mean_latency() * 1e3, PlcModel::kEncoderDelay * 1e3, PlcModel::kCycle * 1e3);
+  if (plc.gateway().delay > 0.0) put(text, " plus the gateway's %.1f ms", plc.gateway().delay * 1e3);
+  text += "\n\n";
 }
 
 void put_machine(std::string& text) {
@@ -54,16 +56,24 @@ void put_lidar(std::string& text, const LidarConfig& lidar, std::uint16_t port) 
   text += "]\n\n";
 }
 
+void put_box(std::string& text, const char* key, const Box& box, const char* remark) {
+  const auto m = [](float v) { return static_cast<double>(v); };
+  put(text, "%s = [%.1f, %.1f, %.1f, %.1f, %.1f, %.1f]%s\n", key, m(box.min.x()), m(box.min.y()),
+      m(box.min.z()), m(box.max.x()), m(box.max.y()), m(box.max.z()), remark);
+}
+
 void put_hull(std::string& text, const HullConfig& hull) {
   const Eigen::Vector3d& p = hull.reference_point;
   text += "[hull]\nmap = \"hull.pcd\"\n";
   put(text,
       "reference_point = [%.3f, %.3f, %.3f]   # hatch 2, coaming top, forward corner on the quay side\n",
       p.x(), p.y(), p.z());
-  const Box& r = *hull.region;
-  put(text, "region = [%.1f, %.1f, %.1f, %.1f, %.1f, %.1f]   # from the quay's edge outward\n\n",
-      static_cast<double>(r.min.x()), static_cast<double>(r.min.y()), static_cast<double>(r.min.z()),
-      static_cast<double>(r.max.x()), static_cast<double>(r.max.y()), static_cast<double>(r.max.z()));
+  put_box(text, "region", *hull.region, "   # from the quay's edge outward");
+  text +=
+      "# Nobody moors her farther along the quay than half a hatch pitch from her place in the map; the "
+      "fenders\n"
+      "# and her lines leave her 2 m; high water lifts her by 3 m, cargo and low water sink her by 9 m.\n";
+  put_box(text, "envelope", hull.envelope, "\n");
 }
 
 void put_health(std::string& text, const SensorTraits& sensor) {
@@ -80,7 +90,7 @@ std::string site_config(const SimulatedBerth& berth, const SiteAddresses& addres
   text +=
       "# Written by `hulltrack simulate`; keys that are not here have their defaults, see "
       "hulltrackd.toml(5).\n\n";
-  put_plc(text, addresses);
+  put_plc(text, addresses, berth.plc_model());
   put_machine(text);
   put_lidar(text, berth.lidar_config(), addresses.lidar_port);
   put_hull(text, berth.hull_config());

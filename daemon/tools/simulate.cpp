@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@ struct SimulateOptions {
   SimulationOptions simulation;
   double seconds = 0.0;
   bool list = false;
+  bool csv = false;
   bool overwrite = false;
   std::string out;         // recording folder; empty = live
   std::string config_out;  // folder for the live service's map and configuration
@@ -72,10 +74,17 @@ class ProgressLine {
   std::optional<Start> started_;
 };
 
-void list_scenarios() {
-  for (const Scenario& scenario : scenarios())
-    std::printf("%-12s %s (%d frames)\n", std::string(scenario.name).c_str(),
-                std::string(scenario.sentence).c_str(), scenario.frames);
+void list_scenarios(bool as_csv) {
+  if (as_csv) std::puts("name,frames,mapped_ship,clear");
+  for (const Scenario& scenario : scenarios()) {
+    const std::string name(scenario.name);
+    if (as_csv)
+      std::printf("%s,%d,%d,%d\n", name.c_str(), scenario.frames, int{scenario.mapped_ship},
+                  int{is_clear(scenario)});
+    else
+      std::printf("%-15s %s (%d frames)\n", name.c_str(), std::string(scenario.sentence).c_str(),
+                  scenario.frames);
+  }
 }
 
 void record(const SimulatedBerth& berth, const SimulateOptions& options) {
@@ -148,7 +157,7 @@ void run_on_network(const SimulatedBerth& berth, const SimulateOptions& options)
 }
 
 void run(SimulateOptions options) {
-  if (options.list) return list_scenarios();
+  if (options.list) return list_scenarios(options.csv);
   constexpr double kFrameRate = 10.0;
   if (options.seconds > 0.0)
     options.simulation.frames = static_cast<int>(std::lround(options.seconds * kFrameRate));
@@ -180,11 +189,20 @@ void add_simulate(CLI::App& app) {
       "SITE/hulltrackd.toml\n"
       "  hulltrack simulate --no-plc --joints 3.5,90,1              only the LiDAR; your PLC presents these "
       "joints");
-  command->add_flag("--list", options->list, "Name the scenarios and exit");
+  auto* list = command->add_flag("--list", options->list, "Name the scenarios and exit");
+  command->add_flag("--csv", options->csv, "With --list: name,frames,mapped_ship,clear for scripts")
+      ->needs(list);
   command->add_option("--scenario", simulation.scenario, "What the ship does, see --list")
       ->capture_default_str();
   command->add_option("--lidar", simulation.lidar_model, "velodyne_vlp16 or velodyne_vlp32c")
       ->capture_default_str();
+  const std::map<std::string, ReturnMode> modes = {
+      {"strongest", ReturnMode::strongest}, {"last", ReturnMode::last}, {"dual", ReturnMode::dual}};
+  command
+      ->add_option("--returns", simulation.return_mode,
+                   "Echoes that the LiDAR reports: strongest, last, dual")
+      ->transform(CLI::Transformer(modes))
+      ->default_str("strongest");
   auto* frames = command
                      ->add_option("--frames", simulation.frames,
                                   "Length of the run at 10 Hz (default: the scenario's own)")

@@ -7,7 +7,7 @@
 #include "daemon/simulator/loader_machine.hpp"
 #include "daemon/simulator/loader_motion.hpp"
 #include "daemon/simulator/plc_model.hpp"
-#include "daemon/simulator/scenario.hpp"
+#include "daemon/simulator/ship_conduct.hpp"
 
 namespace hulltrack {
 namespace {
@@ -33,8 +33,7 @@ TEST(HullMotion, MooringStaysWithinItsAmplitudes) {
 }
 
 TEST(HullMotion, ReferencePointMovesByTheDisplacement) {
-  const Scenario& scenario = *find_scenario("mooring");
-  const HullMotion motion(scenario.motion, kReference, 5);
+  const HullMotion motion(conduct::uneasy(), kReference, 5);
   for (const double t : {0.0, 7.3, 500.0}) {
     const Eigen::Vector3d moved = motion.T_W_H(t) * kReference - kReference;
     EXPECT_NEAR((moved - motion.pose(t).displacement).norm(), 0.0, 1e-12);
@@ -47,6 +46,27 @@ TEST(HullMotion, DraftSinksAtItsRate) {
   config.draft_rate = 1.0 / 3600.0;
   const HullMotion motion(config, kReference, 1);
   EXPECT_NEAR(motion.pose(360.0).displacement.z(), -0.1, 1e-12);
+}
+
+TEST(HullMotion, AListTurnsTheShipAboutTheReferencePointWithinItsTime) {
+  HullMotionConfig config;
+  config.courses = {conduct::listing(5.0, 12.0, {radians(3.0), 0.0, 0.0})};
+  const HullMotion motion(config, kReference, 1);
+  EXPECT_EQ(motion.pose(5.0).rpy.x(), 0.0);
+  EXPECT_NEAR(motion.pose(11.0).rpy.x(), radians(1.5), 1e-12);
+  EXPECT_NEAR(motion.pose(17.0).rpy.x(), radians(3.0), 1e-12);
+  EXPECT_EQ(motion.pose(17.0).displacement.norm(), 0.0);
+  EXPECT_EQ(under_way(config), std::nullopt);
+}
+
+TEST(HullMotion, TheEbbTakesTheShipAlongAndCargoSinksHerInTheWater) {
+  HullMotionConfig config;
+  config.ebb = {0.0, 0.02, 0.01, 2.8};
+  config.courses = {conduct::shifted(0.0, {0.0, 0.0, -4.2}, 0.03, 0.015)};
+  const HullMotion motion(config, kReference, 1);
+  EXPECT_NEAR(motion.ebb(500.0), 2.8, 1e-12);
+  EXPECT_NEAR(motion.pose(500.0).displacement.z(), -7.0, 1e-12);
+  EXPECT_EQ(under_way(config), std::nullopt);
 }
 
 TEST(HullMotion, RunKeepsItsSpeedAndAccelerationAndArrives) {
@@ -130,7 +150,7 @@ TEST(PlcModel, MeanAgeIsTheStatedLatency) {
     ++samples;
   }
   ASSERT_GT(samples, 1000);
-  EXPECT_NEAR(age / samples, PlcModel::kMeanLatency, 1e-4);
+  EXPECT_NEAR(age / samples, plc.mean_latency(), 1e-4);
 }
 
 TEST(PlcModel, HeartbeatChangesOnceACycle) {
@@ -149,15 +169,61 @@ TEST(PlcModel, HeartbeatChangesOnceACycle) {
   EXPECT_NEAR(changes, 11.0 / PlcModel::kCycle, 1.0);
 }
 
-TEST(Scenario, TheNamedOnesExistAndExplainThemselves) {
-  for (const char* name : {"berth", "static", "mooring", "draft", "shift", "wrong-ship"}) {
-    const Scenario* scenario = find_scenario(name);
-    ASSERT_NE(scenario, nullptr) << name;
-    EXPECT_GT(scenario->sentence.size(), 20U) << name;
-    EXPECT_GT(scenario->frames, 0) << name;
+TEST(PlcModel, GatewayDelaysEveryCycleWithinItsJitterAndInOrder) {
+  const LoaderMotion loader(Joints{1.0, 1.5, 0.0});
+  const Gateway gateway{.delay = 0.0165, .jitter = 0.005};
+  const PlcModel plc(loader, {}, 4, gateway);
+  EXPECT_NEAR(plc.mean_latency(), 0.025, 1e-12);
+  const PlcModel direct(loader, {}, 4);
+  double sum = 0.0;
+  double least = 1.0;
+  double most = 0.0;
+  constexpr int kCycles = 2000;
+  for (int i = 0; i < kCycles; ++i) {
+    const double from = plc.presented_from(i);
+    const double delay = from - direct.presented_from(i);
+    sum += delay;
+    least = std::min(least, delay);
+    most = std::max(most, delay);
+    EXPECT_LT(from, plc.presented_from(i + 1));
+    EXPECT_EQ(plc.at(from + 1e-9).heartbeat, static_cast<std::uint16_t>(i));
+    EXPECT_EQ(plc.at(from - 1e-9).heartbeat, static_cast<std::uint16_t>(i - 1));
   }
-  EXPECT_EQ(find_scenario("nowhere"), nullptr);
-  EXPECT_EQ(find_scenario("berth")->frames, 869);
+  EXPECT_GE(least, 0.0115);
+  EXPECT_LE(most, 0.0215);
+  EXPECT_GT(most - least, 0.009);
+  EXPECT_NEAR(sum / kCycles, 0.0165, 4.0 * 0.005 / std::sqrt(3.0 * kCycles));  // 4 sigma of the mean
+}
+
+TEST(LoaderMotion, AtRestExactlyWhileNoJointMoves) {
+  const LoaderMotion motion(loader_limits(), 120.0, 8);
+  int resting = 0;
+  int moving = 0;
+  for (double t = 0.1; t < 119.0; t += 0.1) {
+    constexpr double kMoment = 0.01;  // s, shorter than any move or rest
+    if (motion.at_rest(t) != motion.at_rest(t + kMoment)) continue;
+    const Joints here = motion.at(t);
+    const Joints then = motion.at(t + kMoment);
+    const bool still = here.d_x == then.d_x && here.theta_r == then.theta_r && here.theta_p == then.theta_p;
+    EXPECT_EQ(motion.at_rest(t), still) << t;
+    (still ? resting : moving) += 1;
+  }
+  EXPECT_GT(resting, 100);
+  EXPECT_GT(moving, 100);
+}
+
+TEST(LoaderMotion, AHurriedOneIsHardlyEverAtRestAndOnePassCoversItsRange) {
+  const LoaderMotion hurried(hurried_loader_limits(), 300.0, 5);
+  int resting = 0;
+  for (int i = 0; i < 3000; ++i) resting += hurried.at_rest(0.1 * i) ? 1 : 0;
+  EXPECT_LT(resting, 300);
+  const LoaderLimits limits = passing_loader_limits();
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const LoaderMotion passing(limits, 66.0, seed);
+    constexpr double kArrived = 65.5;  // s: 3 s of rest, 60 s at full speed, 2.5 s for the ramps
+    const double ends = std::abs(passing.at(kArrived).d_x - passing.at(0.0).d_x);
+    EXPECT_NEAR(ends, limits.travel.high - limits.travel.low, 1e-9);
+  }
 }
 
 }  // namespace

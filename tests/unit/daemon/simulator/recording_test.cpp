@@ -83,13 +83,15 @@ TEST_F(Recording, ConfigurationSaysWhatTheSimulationIs) {
     ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
     const Config& config = *reading.config;
     EXPECT_EQ(config.plc.port, 1234);
-    EXPECT_NEAR(to_seconds(config.plc.latency), PlcModel::kMeanLatency, 1e-9);
+    EXPECT_NEAR(to_seconds(config.plc.latency), simulated->plc_model().mean_latency(), 1e-9);
     ASSERT_EQ(config.lidars.size(), 1U);
     EXPECT_EQ(config.lidars[0].port, 2999);
     EXPECT_TRUE(config.lidars[0].mount.isApprox(sensor.mount, 1e-9));
     EXPECT_EQ(config.lidars[0].exclude, simulated->lidar_config().exclude);
     EXPECT_TRUE(
         config.tracker.hull.reference_point.isApprox(simulated->hull_config().reference_point, 1e-12));
+    EXPECT_EQ(config.tracker.hull.envelope.min, simulated->hull_config().envelope.min);
+    EXPECT_EQ(config.tracker.hull.envelope.max, simulated->hull_config().envelope.max);
     EXPECT_EQ(config.tracker.registration.method, RegistrationConfig{}.method);
   }
 }
