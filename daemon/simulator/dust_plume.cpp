@@ -8,18 +8,18 @@
 namespace hulltrack {
 namespace {
 
-constexpr double kPuffSize = 1.5;                   // m
-const Eigen::Vector3d kDrift = {0.8, 0.3, 0.6};     // m/s of the dusty air
-constexpr float kStep = 0.5F;                       // m along a ray
+constexpr double kPuffSize = 1.5;                // m
+const Eigen::Vector3d kDrift = {0.8, 0.3, 0.6};  // m/s of the dusty air
+constexpr float kStep = 0.5F;                    // m along a ray
 
 struct Interval {
   float begin, end;
 };
 
 /// The part of a ray inside the upright cylinder around the plume.
-Interval inside(const Point& from_chute, const Point& direction, float reach) {
+Interval inside(const Point& from_top, const Point& direction, float reach) {
   const auto across = direction.head<2>();
-  const auto offset = from_chute.head<2>();
+  const auto offset = from_top.head<2>();
   const float a = across.squaredNorm();
   const float b = offset.dot(across);
   const float c = offset.squaredNorm() - DustPlume::kBottomRadius * DustPlume::kBottomRadius;
@@ -33,11 +33,11 @@ Interval inside(const Point& from_chute, const Point& direction, float reach) {
     return {0.0F, 0.0F};
   }
   if (std::abs(direction.z()) < 1e-6F) {
-    const bool within = from_chute.z() < 0.0F && from_chute.z() > -DustPlume::kDepth;
+    const bool within = from_top.z() < 0.0F && from_top.z() > -DustPlume::kDepth;
     return within ? result : Interval{0.0F, 0.0F};
   }
-  const float top = -from_chute.z() / direction.z();
-  const float bottom = (-DustPlume::kDepth - from_chute.z()) / direction.z();
+  const float top = -from_top.z() / direction.z();
+  const float bottom = (-DustPlume::kDepth - from_top.z()) / direction.z();
   return {std::max(result.begin, std::min(top, bottom)), std::min(result.end, std::max(top, bottom))};
 }
 
@@ -50,13 +50,14 @@ DustPlume::Now DustPlume::at(double t) const {
   int pouring = 0;
   for (int i = 0; i < kMemory; ++i) pouring += loader_->at_rest(t - 0.5 * i) ? 1 : 0;
   const Pose T_W_B = lidar_pose(loader_machine(), loader_->at(t), Pose::Identity());
-  return {t, (T_W_B * chute_end_B().cast<double>()).cast<float>(), static_cast<double>(pouring) / kMemory};
+  const Eigen::Vector3d chute_end_W = T_W_B * chute_end_B().cast<double>();
+  return {t, chute_end_W.cast<float>() + Point(0.0F, 0.0F, kRise), static_cast<double>(pouring) / kMemory};
 }
 
 std::optional<float> DustPlume::stops(const Now& now, const Point& origin_W, const Point& direction_W,
                                       float reach, RandomStream& random) const {
   if (density_ <= 0.0 || now.strength <= 0.0) return std::nullopt;
-  const Interval part = inside(origin_W - now.chute_end_W, direction_W, reach);
+  const Interval part = inside(origin_W - now.top_W, direction_W, reach);
   if (part.end <= part.begin) return std::nullopt;
   const double endurance = -std::log(1.0 - random.uniform());  // Beer and Lambert
   double depth = 0.0;
@@ -68,10 +69,9 @@ std::optional<float> DustPlume::stops(const Now& now, const Point& origin_W, con
 }
 
 double DustPlume::density(const Now& now, const Point& p_W) const {
-  const Point below = p_W - now.chute_end_W;
-  const double radius =
-      std::lerp(static_cast<double>(kTopRadius), static_cast<double>(kBottomRadius),
-                static_cast<double>(-below.z() / kDepth));
+  const Point below = p_W - now.top_W;
+  const double radius = std::lerp(static_cast<double>(kTopRadius), static_cast<double>(kBottomRadius),
+                                  static_cast<double>(-below.z() / kDepth));
   const double away = static_cast<double>(below.head<2>().norm()) / radius;
   if (away > 1.0) return 0.0;
   const double puff = noise((p_W.cast<double>() - now.t * kDrift) / kPuffSize);

@@ -46,8 +46,8 @@ ShapeChange::ShapeChange(const HullShape& from, const HullShape& to, double dura
     : from_(from),
       to_(to),
       duration_(duration),
-      steps_(static_cast<std::size_t>(std::ceil(std::max(std::abs(to.bend - from.bend) / kBendStep,
-                                                         std::abs(to.fill - from.fill) / kFillStep)))) {}
+      steps_(static_cast<std::size_t>(std::ceil(
+          std::max(std::abs(to.bend - from.bend) / kBendStep, std::abs(to.fill - from.fill) / kFillStep)))) {}
 
 std::size_t ShapeChange::at(double t) const {
   const double share = std::clamp(t / duration_, 0.0, 1.0);

@@ -1,5 +1,5 @@
-// What is the shape of the ship at time t? What changes slowly while she is loaded: the cargo's height and the
-// bend of the hull.
+// What is the shape of the ship at time t? What changes slowly while she is loaded: the cargo's height and
+// the bend of the hull.
 //
 // Bending is the parabola of Euler's beam under an even load: u(x) = -bend (1 - (2x/L)^2), x from amidships,
 // L the ship's length; bend > 0 is a sag (the middle lower), < 0 a hog, 0 the shape of the map. Points are

@@ -48,6 +48,23 @@ HullMotionConfig with(HullMotionConfig motion, const std::vector<Course>& course
   return motion;
 }
 
+HullMotionConfig sinking() {
+  HullMotionConfig motion = uneasy();
+  motion.draft_rate = 0.0;
+  motion.ebb = {0.0, 0.02, 0.01, 2.8};
+  return with(motion, {shifted(0.0, {0.0, 0.0, -4.2}, 0.03, 0.015)});
+}
+
+HullMotionConfig whole_shift() {
+  HullMotionConfig motion = uneasy();
+  motion.draft_rate = 0.0;
+  motion.ebb = {0.0, 0.004, 0.002, 1.2};
+  return with(
+      motion,
+      {shifted(0.0, {0.0, 0.0, -2.4}, 0.008, 0.004), listing(20.0, 80.0, {radians(0.8), 0.0, 0.0}),
+       listing(60.0, 150.0, {0.0, radians(-0.5), 0.0}), listing(140.0, 100.0, {radians(-1.4), 0.0, 0.0})});
+}
+
 Course shifted(double start, const Eigen::Vector3d& way, double speed, double acceleration) {
   return {.run = {start, speed, acceleration, way.norm()}, .direction = way.normalized()};
 }
@@ -60,7 +77,7 @@ Course leaving(double start, const Eigen::Vector3d& direction, double speed, dou
 }
 
 Course listing(double start, double duration, const Eigen::Vector3d& rpy) {
-  constexpr double kRamp = 4.0;  // s
+  constexpr double kRamp = 4.0;                  // s
   const double at_full_rate = duration - kRamp;  // either ramp covers half of what full rate would
   return {.run = {start, 1.0, 1.0 / kRamp, at_full_rate},
           .direction = Eigen::Vector3d::Zero(),

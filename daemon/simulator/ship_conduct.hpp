@@ -8,6 +8,8 @@
 
 namespace hulltrack::conduct {
 
+inline constexpr double kHatchPitch = 22.6;  // m, second to third hatch of berth_ship()
+
 /// A river berth out of the swell: the low end of what sheltered berths see; sinking 1 m/h.
 [[nodiscard]] HullMotionConfig sheltered();
 
@@ -16,6 +18,12 @@ namespace hulltrack::conduct {
 
 /// Sheltered, hours of loading after the map was made: deeper, down by the stern, heeled towards the quay.
 [[nodiscard]] HullMotionConfig loaded();
+
+/// Uneasy, and 7 m deeper within 142 s: by cargo and by the ebb.
+[[nodiscard]] HullMotionConfig sinking();
+
+/// Uneasy, with what a whole shift brings in five minutes: cargo, ebb, list one way and the other, trim.
+[[nodiscard]] HullMotionConfig whole_shift();
 
 /// `motion` and then what the ship does beside it.
 [[nodiscard]] HullMotionConfig with(HullMotionConfig motion, const std::vector<Course>& courses);

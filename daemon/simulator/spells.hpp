@@ -10,7 +10,7 @@ namespace hulltrack {
 
 /// From `first` on for `length`, again and again every `period`. The defaults: always.
 struct Spells {
-  double first = 0.0;                                        // s
+  double first = 0.0;                                       // s
   double length = std::numeric_limits<double>::infinity();  // s
   double period = std::numeric_limits<double>::infinity();  // s, more than length; infinite: only once
 

@@ -33,16 +33,16 @@ struct WindowCover {
 /// What comes back from a cover: mostly nothing, at times a return nearer than a metre.
 [[nodiscard]] Echoes behind_cover(RandomStream& random);
 
-/// A particle in the air answers from `range`, nearer than `echoes` and louder. In every second such beam light
-/// goes on past it and the last echo is still the surface's.
+/// A particle in the air answers from `range`, nearer than `echoes` and louder. In every second such beam
+/// light goes on past it and the last echo is still the surface's.
 [[nodiscard]] Echoes behind_particle(double range, const Echoes& echoes, RandomStream& random);
 
 /// `echoes` as they arrive through the weather.
 ///
 /// A beam ends on a drop at a range drawn with a density that falls by e every 6 m - drops near the sensor
 /// fill most of the beam and answer loudest; in 25 mm/h nearly all false returns come from within 20 m -
-/// nearer than the surface and beyond the sensor's least range. In fog the share that is lost on the way grows
-/// as (range / visibility)^2.
+/// nearer than the surface and beyond the sensor's least range. In fog the share that is lost on the way
+/// grows as (range / visibility)^2.
 [[nodiscard]] Echoes through_weather(const Weather& weather, const SensorTraits& sensor, const Echoes& echoes,
                                      RandomStream& random);
 

@@ -15,7 +15,7 @@ double stopped_share(const DustPlume& plume, double t, float height, RandomStrea
   constexpr int kBeams = 400;
   int stopped = 0;
   for (int i = 0; i < kBeams; ++i) {
-    const Point origin = now.chute_end_W + Point(-20.0F, static_cast<float>(random.uniform(-1.0, 1.0)), -height);
+    const Point origin = now.top_W + Point(-20.0F, static_cast<float>(random.uniform(-1.0, 1.0)), -height);
     const auto at = plume.stops(now, origin, {1.0F, 0.0F, 0.0F}, 40.0F, random);
     if (!at) continue;
     ++stopped;
@@ -30,7 +30,7 @@ TEST(DustPlume, StopsTwentyToEightyPercentOfTheBeamsInsideWhilePouringAndComesAn
   const DustPlume plume(find_scenario("dust")->dust, pouring, 7);
   RandomStream random(1, 1);
   std::vector<double> shares;
-  for (double t = 0.0; t < 60.0; t += 1.5) shares.push_back(stopped_share(plume, t, 6.0F, random));
+  for (double t = 0.0; t < 60.0; t += 1.5) shares.push_back(stopped_share(plume, t, 11.0F, random));
   std::sort(shares.begin(), shares.end());
   EXPECT_GT(shares[shares.size() / 10], 0.2);
   EXPECT_LT(shares[shares.size() * 9 / 10], 0.8);
@@ -59,9 +59,9 @@ TEST(DustPlume, NeighbouringBeamsMeetTheSamePuffAndDistantTimesDoNot) {
   // Correlation of the stopped share with itself after 0.1 s and after 20 s.
   std::vector<double> now, soon, late;
   for (double t = 0.0; t < 120.0; t += 1.7) {
-    now.push_back(stopped_share(plume, t, 6.0F, random));
-    soon.push_back(stopped_share(plume, t + 0.1, 6.0F, random));
-    late.push_back(stopped_share(plume, t + 20.0, 6.0F, random));
+    now.push_back(stopped_share(plume, t, 11.0F, random));
+    soon.push_back(stopped_share(plume, t + 0.1, 11.0F, random));
+    late.push_back(stopped_share(plume, t + 20.0, 11.0F, random));
   }
   const auto correlation = [](const std::vector<double>& a, const std::vector<double>& b) {
     const auto n = static_cast<Eigen::Index>(a.size());
@@ -80,14 +80,14 @@ TEST(DustPlume, BeamsBesideAboveAndShortOfThePlumePass) {
   const DustPlume plume(1e6, pouring, 7);
   const DustPlume::Now now = plume.at(3.0);
   RandomStream random(1, 3);
-  const Point chute = now.chute_end_W;
+  const Point top = now.top_W;
   for (int i = 0; i < 200; ++i) {
-    EXPECT_FALSE(plume.stops(now, chute + Point(-20, 6.0F, -5), {1, 0, 0}, 40.0F, random));
-    EXPECT_FALSE(plume.stops(now, chute + Point(-20, 0, 0.5F), {1, 0, 0}, 40.0F, random));
-    EXPECT_FALSE(plume.stops(now, chute + Point(-20, 0, -5), {1, 0, 0}, 14.0F, random));
-    EXPECT_FALSE(plume.stops(now, chute + Point(0, 0, -10.5F), {0, 0, -1}, 40.0F, random));
+    EXPECT_FALSE(plume.stops(now, top + Point(-20, 8.5F, -5), {1, 0, 0}, 40.0F, random));
+    EXPECT_FALSE(plume.stops(now, top + Point(-20, 0, 0.5F), {1, 0, 0}, 40.0F, random));
+    EXPECT_FALSE(plume.stops(now, top + Point(-20, 0, -5), {1, 0, 0}, 11.0F, random));
+    EXPECT_FALSE(plume.stops(now, top + Point(0, 0, -17.5F), {0, 0, -1}, 40.0F, random));
   }
-  EXPECT_TRUE(plume.stops(now, chute + Point(-20, 0.3F, -6), {1, 0, 0}, 40.0F, random));
+  EXPECT_TRUE(plume.stops(now, top + Point(-20, 0.3F, -6), {1, 0, 0}, 40.0F, random));
 }
 
 }  // namespace

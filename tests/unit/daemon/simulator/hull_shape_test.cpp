@@ -74,7 +74,8 @@ TEST(HullShape, TruthAtTheReferencePointIsThatOfTheBentMesh) {
       const double u = deflection(berth->bend(end), kLength, x);
       for (const Point& p : mesh.vertices)
         if (const Eigen::Vector3d q = p.cast<double>();
-            (q - Eigen::Vector3d(x, p_H.y(), p_H.z() + u)).norm() < (best - Eigen::Vector3d(x, p_H.y(), p_H.z() + u)).norm())
+            (q - Eigen::Vector3d(x, p_H.y(), p_H.z() + u)).norm() <
+            (best - Eigen::Vector3d(x, p_H.y(), p_H.z() + u)).norm())
           best = q;
       return best;
     };

@@ -78,7 +78,8 @@ TEST(Scenario, BlindSpellsHideTheWholeOfTheShipsDrift) {
 TEST(Scenario, ClearMeansThatNothingEverComesBetween) {
   EXPECT_TRUE(is_clear(*find_scenario("berth")));
   EXPECT_TRUE(is_clear(*find_scenario("crane")));
-  for (const char* name : {"rain", "rain-heavy", "fog", "dust", "blocked-window", "warp-blind", "night-shift"})
+  for (const char* name :
+       {"rain", "rain-heavy", "fog", "dust", "blocked-window", "warp-blind", "night-shift"})
     EXPECT_FALSE(is_clear(*find_scenario(name))) << name;
 }
 

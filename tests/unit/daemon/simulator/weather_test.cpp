@@ -135,7 +135,8 @@ TEST(Weather, SameSeedSameBytesInEveryWeather) {
   for (const char* name : {"rain", "dust", "fog", "crane", "cargo", "sag", "night-shift"}) {
     const auto one = make({.scenario = name, .seed = 3});
     const auto two = make({.scenario = name, .seed = 3});
-    for (const std::uint64_t packet : {5000U, 4U}) EXPECT_EQ(one->packet(packet), two->packet(packet)) << name;
+    for (const std::uint64_t packet : {5000U, 4U})
+      EXPECT_EQ(one->packet(packet), two->packet(packet)) << name;
   }
 }
 
