@@ -10,13 +10,22 @@ bool inside_any(const std::vector<Box>& boxes, const Point& p) {
   return std::any_of(boxes.begin(), boxes.end(), [&p](const Box& box) { return box.contains(p); });
 }
 
+/// Takes a point of the hull to where it is `seconds` later.
+Pose drifted(const HullDrift& drift, double seconds) {
+  Pose T = Pose::Identity();
+  T.linear() = so3_exp(seconds * drift.turning);
+  T.translation() = drift.about_W + seconds * drift.velocity - T.linear() * drift.about_W;
+  return T;
+}
+
 }  // namespace
 
 ScanFilter::ScanFilter(const MachineConfig& machine, std::vector<SensorConfig> sensors,
                        std::optional<Box> region_W)
     : machine_(machine), sensors_(std::move(sensors)), region_W_(std::move(region_W)) {}
 
-void ScanFilter::run(const Scan& scan, const JointHistory& joints, FilteredScan& out) const {
+void ScanFilter::run(const Scan& scan, const JointHistory& joints, const HullDrift& drift,
+                     FilteredScan& out) const {
   out.returns_W.resize(sensors_.size());
   for (Cloud& returns : out.returns_W) {
     returns.clear();
@@ -31,7 +40,8 @@ void ScanFilter::run(const Scan& scan, const JointHistory& joints, FilteredScan&
       ++out.segments_left_out;
       continue;
     }
-    const Pose T_W_L = lidar_pose(machine_, at.joints, sensors_[segment.lidar].mount);
+    const Pose T_W_L = drifted(drift, to_seconds(scan.mid_time() - segment.time)) *
+                       lidar_pose(machine_, at.joints, sensors_[segment.lidar].mount);
     run_segment(std::span(scan.points).subspan(segment.first, segment.count), segment.lidar, T_W_L, out);
   }
 }

@@ -1,9 +1,9 @@
 // Every return of a scan from its sensor's frame L to the world W, and which of them may be hull.
 //
 // Each segment is moved with the joints at its own time (one T_W_L a segment: the loader moves less
-// than 1 mm within a datagram). A return is a candidate if its range is within the sensor's limits,
-// no exclude box in L holds it and the region in W does. Frames L and W, metres.
-// Precondition: the joint history covers the scan (the caller asks covers() first); a segment that it
+// than 1 mm within a datagram), and on with the hull to the scan's middle. A return is a candidate if its
+// range is within the sensor's limits, no exclude box in L holds it and the region in W does. Frames L and W,
+// metres. Precondition: the joint history covers the scan (the caller asks covers() first); a segment that it
 // does not answer for, of an unknown LiDAR, or outside the point array is left out and counted.
 // NaN and infinite points are left out. Thread rule: one owner. Cost: one pass, no allocation once the
 // buffers have grown to the scan's size.
@@ -35,12 +35,19 @@ struct FilteredScan {
   std::uint32_t segments_left_out = 0;
 };
 
+/// How the hull moves while a scan is taken: its returns are brought to where they are at the scan's middle.
+struct HullDrift {
+  Eigen::Vector3d about_W = Eigen::Vector3d::Zero();   // m
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of the hull at about_W, m/s
+  Eigen::Vector3d turning = Eigen::Vector3d::Zero();   // rad/s, about W's axes
+};
+
 class ScanFilter {
  public:
   ScanFilter(const MachineConfig& machine, std::vector<SensorConfig> sensors, std::optional<Box> region_W);
 
   /// `out` is replaced.
-  void run(const Scan& scan, const JointHistory& joints, FilteredScan& out) const;
+  void run(const Scan& scan, const JointHistory& joints, const HullDrift& drift, FilteredScan& out) const;
 
   [[nodiscard]] const std::vector<SensorConfig>& sensors() const { return sensors_; }
   [[nodiscard]] const MachineConfig& machine() const { return machine_; }

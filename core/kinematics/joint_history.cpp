@@ -1,6 +1,7 @@
 #include "core/kinematics/joint_history.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace hulltrack {
 namespace {
@@ -45,6 +46,23 @@ JointHistory::Answer JointHistory::at(MeasurementTime t) const {
   return {Lookup::ok,
           {mix(a.joints.d_x, b.joints.d_x, w), mix(a.joints.theta_r, b.joints.theta_r, w),
            mix(a.joints.theta_p, b.joints.theta_p, w)}};
+}
+
+std::optional<JointHistory::Motion> JointHistory::motion_at(MeasurementTime t) const {
+  const Answer answer = at(t);
+  const auto after =
+      std::upper_bound(samples_.begin(), samples_.end(), t,
+                       [](MeasurementTime time, const JointSample& s) { return time < s.time; });
+  if (answer.lookup != Lookup::ok || after == samples_.begin() || after == samples_.end()) {
+    return std::nullopt;
+  }
+  const JointSample& a = *std::prev(after);
+  const JointSample& b = *after;
+  const double dt = to_seconds(b.time - a.time);
+  return Motion{answer.joints,
+                {(b.joints.d_x - a.joints.d_x) / dt, (b.joints.theta_r - a.joints.theta_r) / dt,
+                 (b.joints.theta_p - a.joints.theta_p) / dt},
+                b.time - a.time};
 }
 
 JointHistory::Lookup JointHistory::covers(MeasurementTime first, MeasurementTime last) const {

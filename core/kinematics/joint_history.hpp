@@ -35,6 +35,14 @@ class JointHistory {
 
   [[nodiscard]] Answer at(MeasurementTime t) const;
 
+  /// Between the two samples around t; nothing where at() has no answer.
+  struct Motion {
+    Joints joints;        // at t
+    Joints rate;          // a second
+    Nanoseconds spacing;  // of the samples
+  };
+  [[nodiscard]] std::optional<Motion> motion_at(MeasurementTime t) const;
+
   /// ok if every time in [first, last] has an answer; otherwise the first reason met.
   [[nodiscard]] Lookup covers(MeasurementTime first, MeasurementTime last) const;
 

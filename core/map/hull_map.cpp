@@ -1,6 +1,9 @@
 #include "core/map/hull_map.hpp"
 
+#include <algorithm>
+
 #include "core/filter/voxel_filter.hpp"
+#include "core/geometry/box.hpp"
 #include "core/map/surfels.hpp"
 
 namespace hulltrack {
@@ -22,5 +25,11 @@ HullMap::HullMap(Cloud cloud_H)
       occluders_H_(thinned(cloud_H_, kOccluderVoxel)),
       planes_(cloud_H_, tree_),
       occupancy_(subset_H_) {}
+
+double HullMap::length() const {
+  constexpr float kShortest = 1.0F;  // a map of one point is a map
+  const Box box = bounding_box(subset_H_);
+  return static_cast<double>(std::max(kShortest, box.max.x() - box.min.x()));
+}
 
 }  // namespace hulltrack

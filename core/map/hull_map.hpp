@@ -26,6 +26,8 @@ class HullMap {
   explicit HullMap(Cloud cloud_H);
 
   [[nodiscard]] const Cloud& cloud_H() const { return cloud_H_; }
+  /// Of the hull as far as it is mapped, along X, m; > 0.
+  [[nodiscard]] double length() const;
   [[nodiscard]] const KdTree& tree() const { return tree_; }
 
   /// The metric subset, and for each of its points the surface around it.

@@ -36,9 +36,10 @@ OccupancyGrid::Index OccupancyGrid::cell_of(const Point& p_H) const {
 
 // Twice kUp empty cells below and above: a cell kUp outside may be shifted by kUp more.
 std::uint8_t& OccupancyGrid::at(const Index& i) {
-  const auto column = static_cast<std::size_t>(i.x) * static_cast<std::size_t>(size_.y) +
-                      static_cast<std::size_t>(i.y);
-  return worth_[column * static_cast<std::size_t>(size_.z + 4 * kUp) + static_cast<std::size_t>(i.z + 2 * kUp)];
+  const auto column =
+      static_cast<std::size_t>(i.x) * static_cast<std::size_t>(size_.y) + static_cast<std::size_t>(i.y);
+  return worth_[column * static_cast<std::size_t>(size_.z + 4 * kUp) +
+                static_cast<std::size_t>(i.z + 2 * kUp)];
 }
 
 void OccupancyGrid::mark(const Index& cell) {

@@ -3,8 +3,8 @@
 //
 // Cells of kCell in H: worth 2 with a plane of the map in it, 1 beside such a cell (a shift is off by up to
 // half a cell, a hull by its turn). Height is the fastest index, so that one look at a column of cells
-// answers for all vertical shifts at once. Frame H, metres. Immutable. No failure: points outside count nothing.
-// Cost: 1 to 3 MB a ship; correlate() some 6 ns a point.
+// answers for all vertical shifts at once. Frame H, metres. Immutable. No failure: points outside count
+// nothing. Cost: 1 to 3 MB a ship; correlate() some 6 ns a point.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,9 @@
 #include "core/map/plane_map.hpp"
 
+#include <array>
+#include <cmath>
+#include <map>
+
 #include "core/filter/voxel_filter.hpp"
 #include "core/map/surfels.hpp"
 
@@ -12,7 +16,7 @@ std::vector<PlaneMap::Plane> find_planes(const Cloud& cloud_H, const KdTree& map
   std::vector<PlaneMap::Plane> planes;
   for (const Surfel& surfel : compute_surfels(points_H, cloud_H, map)) {
     if (surfel.planar) {
-      planes.push_back({surfel.centre_H, surfel.normal_H, surfel.surface});
+      planes.push_back({surfel.centre_H, surfel.normal_H, surfel.surface, 0});
     }
   }
   return planes;
@@ -27,9 +31,22 @@ Cloud centres_of(const std::vector<PlaneMap::Plane>& planes) {
   return centres_H;
 }
 
+/// Numbers the patches in the order of their first plane; returns how many there are.
+std::uint32_t number_patches(std::vector<PlaneMap::Plane>& planes) {
+  std::map<std::array<int, 4>, std::uint32_t> numbers;
+  for (PlaneMap::Plane& plane : planes) {
+    const auto cell = [&plane](int axis) {
+      return static_cast<int>(std::floor(plane.centre_H[axis] / PlaneMap::kPatch));
+    };
+    const std::array<int, 4> key{cell(0), cell(1), cell(2), static_cast<int>(plane.surface)};
+    plane.patch = numbers.try_emplace(key, static_cast<std::uint32_t>(numbers.size())).first->second;
+  }
+  return static_cast<std::uint32_t>(numbers.size());
+}
+
 }  // namespace
 
 PlaneMap::PlaneMap(const Cloud& cloud_H, const KdTree& map)
-    : planes_(find_planes(cloud_H, map)), tree_(centres_of(planes_)) {}
+    : planes_(find_planes(cloud_H, map)), patches_(number_patches(planes_)), tree_(centres_of(planes_)) {}
 
 }  // namespace hulltrack

@@ -25,18 +25,39 @@ int solve_held(const Eigen::Matrix<double, N, N>& H, const Eigen::Matrix<double,
 
 }  // namespace
 
+PlaneSystem::Solution PlaneSystem::solve(double bend_off, double bend_worth) const {
+  if (!std::isfinite(bend_worth)) {
+    return solve();
+  }
+  // The bend eliminated: what is left speaks of the pose, with far parts of the ship worth less.
+  const Matrix6 H_pp = H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>();
+  const Twist h_pb = H_.topRightCorner<6, 1>();
+  const double h_bb = H_(6, 6) + bend_worth;
+  const double g_b = g_[6] - bend_worth * bend_off;
+  Solution solution;
+  if (!(h_bb > 0.0)) {
+    return solve();
+  }
+  solution.free = solve_held<6>(H_pp - h_pb * h_pb.transpose() / h_bb, g_.head<6>() - h_pb * (g_b / h_bb),
+                                solution.twist);
+  solution.bend = (g_b - h_pb.dot(solution.twist)) / h_bb;
+  solution.twist.head<3>() /= kLever;
+  return solution;
+}
+
 PlaneSystem::Solution PlaneSystem::solve() const {
-  Solution solution{Twist::Zero(), 0};
-  solution.free = solve_held<6>(H_.selfadjointView<Eigen::Upper>(), g_, solution.twist);
+  Solution solution;
+  solution.free =
+      solve_held<6>(H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>(), g_.head<6>(), solution.twist);
   solution.twist.head<3>() /= kLever;
   return solution;
 }
 
 PlaneSystem::Solution PlaneSystem::solve_shift() const {
-  Solution solution{Twist::Zero(), 0};
+  Solution solution;
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  const Eigen::Matrix3d H = H_.bottomRightCorner<3, 3>().selfadjointView<Eigen::Upper>();
-  solution.free = solve_held<3>(H, g_.tail<3>(), shift);
+  const Eigen::Matrix3d H = H_.block<3, 3>(3, 3).selfadjointView<Eigen::Upper>();
+  solution.free = solve_held<3>(H, g_.segment<3>(3), shift);
   solution.twist.tail<3>() = shift;
   return solution;
 }
@@ -44,7 +65,8 @@ PlaneSystem::Solution PlaneSystem::solve_shift() const {
 Matrix6 PlaneSystem::normal_matrix() const {
   Twist scale;
   scale << Eigen::Vector3d::Constant(kLever), Eigen::Vector3d::Ones();
-  return scale.asDiagonal() * Matrix6(H_.selfadjointView<Eigen::Upper>()) * scale.asDiagonal();
+  return scale.asDiagonal() * Matrix6(H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>()) *
+         scale.asDiagonal();
 }
 
 Pose pose_from_twist_about(const Eigen::Vector3d& centre, const Twist& twist) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace hulltrack {
 namespace {
@@ -24,6 +25,19 @@ constexpr std::array<Stage, 4> kApproach = {
 
 constexpr int kInnerSteps = 2;
 
+// Of a return against a plane of the map, m: what a prior of the bend is weighed against.
+constexpr double kPairSigma = 0.02;
+
+void report(const PlaneSystem& system, const PlaneSystem::Solution& solution, IcpResult& result) {
+  result.matched = system.pairs();
+  result.rms_residual = system.rms();
+  result.normal_matrix = system.normal_matrix();
+  result.centre = system.centre();
+  result.free_directions = solution.free;
+  result.last_rotation = solution.twist.head<3>().norm();
+  result.last_translation = solution.twist.tail<3>().norm();
+}
+
 double kernel_of_round(int round) {
   return kKernels[std::min(static_cast<std::size_t>(round), kKernels.size() - 1)];
 }
@@ -41,67 +55,92 @@ OnPlane on_plane(const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double 
 
 }  // namespace
 
-PointToPlaneIcp::PointToPlaneIcp(const PlaneIcpConfig& config) : config_(config), correspondences_(kGate) {
-  assert(config.max_iterations >= 1);
+PointToPlaneIcp::PointToPlaneIcp(const PlaneIcpConfig& config, const BendShape& shape)
+    : config_(config), shape_(shape), correspondences_(kGate) {
+  assert(config.max_iterations >= 1 && shape.length > 0.0);
+}
+
+/// Calls visit(point, plane, residual against the bent plane, rise) for the pairs on their planes.
+template <typename Visit>
+void PointToPlaneIcp::for_each_pair(std::span<const Correspondence> pairs, const PlaneMap& map,
+                                    const Estimate& at, Visit&& visit) const {
+  for (const Correspondence& pair : pairs) {
+    const PlaneMap::Plane& plane = map.planes()[pair.index];
+    const Eigen::Vector3d p = at.T * pair.source;
+    const OnPlane on = on_plane(p, plane, kBesides);
+    if (!on.beside) {
+      const double rise = shape_.rise(p.x());
+      visit(p, plane, on.residual - at.bend * rise * static_cast<double>(plane.normal_H.z()), rise);
+    }
+  }
 }
 
 PlaneSystem PointToPlaneIcp::system_of(std::span<const Correspondence> pairs, const PlaneMap& map,
-                                       const Pose& T_step, double kernel) const {
+                                       const Estimate& at, double kernel) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Correspondence& pair : pairs) {
     sum += pair.source;
   }
-  PlaneSystem system(T_step * Eigen::Vector3d(sum / std::max(1.0, static_cast<double>(pairs.size()))),
-                     kernel);
-  for (const Correspondence& pair : pairs) {
-    const PlaneMap::Plane& plane = map.planes()[pair.index];
-    const Eigen::Vector3d p = T_step * pair.source;
-    const OnPlane at = on_plane(p, plane, kBesides);
-    if (!at.beside) {
-      system.add(p, plane.normal_H.cast<double>(), at.residual);
-    }
-  }
+  PlaneSystem system(at.T * Eigen::Vector3d(sum / std::max(1.0, static_cast<double>(pairs.size()))), kernel);
+  for_each_pair(pairs, map, at,
+                [&](const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double r, double rise) {
+                  system.add(p, plane.normal_H.cast<double>(), r, rise);
+                });
   return system;
 }
 
-IcpResult PointToPlaneIcp::align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init) {
-  IcpResult result;
+PlaneCovariance PointToPlaneIcp::covariance_of(std::span<const Correspondence> pairs, const PlaneMap& map,
+                                               const Estimate& at, const Bend& known) {
+  const PlaneSystem system = system_of(pairs, map, at, kKernels.back());
+  estimator_.reset(map.patches());
+  for_each_pair(pairs, map, at,
+                [&](const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double r, double rise) {
+                  estimator_.add(system, plane.patch, p, plane.normal_H.cast<double>(), r, rise);
+                });
+  return estimator_.estimate(known);
+}
+
+PlaneIcpResult PointToPlaneIcp::align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init,
+                                      const Bend& bend) {
+  PlaneIcpResult out;
+  IcpResult& result = out.icp;
   if (!T_init.matrix().allFinite()) {
-    return result;
+    return out;
   }
   result.T_target_source = T_init;
   result.stop = IcpStop::iteration_limit;
+  out.bend = bend.d;
+  const double bend_worth = bend.sigma > 0.0 ? kPairSigma * kPairSigma / (bend.sigma * bend.sigma)
+                                             : std::numeric_limits<double>::infinity();
   correspondences_.reset(source, map.tree());
-  for (int round = 0; round < config_.max_iterations; ++round) {
-    const std::span<const Correspondence> pairs = correspondences_.find(result.T_target_source);
+  std::span<const Correspondence> pairs;
+  Estimate at;
+  for (int round = 0; round < config_.max_iterations && !result.converged; ++round) {
+    pairs = correspondences_.find(result.T_target_source);
     ++result.iterations;
-    Pose T_round = Pose::Identity();  // since the search
+    at = {Pose::Identity(), out.bend};
     for (int step = 0; step < kInnerSteps; ++step) {
-      const PlaneSystem system = system_of(pairs, map, T_round, kernel_of_round(round));
-      const PlaneSystem::Solution solution = system.solve();
-      result.matched = system.pairs();
-      result.rms_residual = system.rms();
-      result.normal_matrix = system.normal_matrix();
-      result.centre = system.centre();
-      result.free_directions = solution.free;
+      const PlaneSystem system = system_of(pairs, map, at, kernel_of_round(round));
+      const PlaneSystem::Solution solution = system.solve(at.bend - bend.d, bend_worth);
+      report(system, solution, result);
       if (solution.free == 6) {
         result.stop = IcpStop::too_few_matches;
-        return result;
+        return out;
       }
-      T_round = pose_from_twist_about(system.centre(), solution.twist) * T_round;
-      result.last_rotation = solution.twist.head<3>().norm();
-      result.last_translation = solution.twist.tail<3>().norm();
+      at.T = pose_from_twist_about(system.centre(), solution.twist) * at.T;
+      at.bend += solution.bend;
     }
-    result.T_target_source = T_round * result.T_target_source;
-    if (static_cast<std::size_t>(round) + 1 >= kKernels.size() &&
-        result.last_translation < config_.translation_epsilon &&
-        result.last_rotation < config_.rotation_epsilon) {
-      result.stop = IcpStop::converged;
-      result.converged = true;
-      break;
-    }
+    result.T_target_source = at.T * result.T_target_source;
+    out.bend = at.bend;
+    result.converged = static_cast<std::size_t>(round) + 1 >= kKernels.size() &&
+                       result.last_translation < config_.translation_epsilon &&
+                       result.last_rotation < config_.rotation_epsilon;
   }
-  return result;
+  if (result.converged) {
+    result.stop = IcpStop::converged;
+  }
+  out.covariance = covariance_of(pairs, map, at, bend);
+  return out;
 }
 
 void PointToPlaneIcp::move(std::span<const Point> source, const Pose& T) {

@@ -13,8 +13,10 @@
 
 #include "core/geometry/cloud.hpp"
 #include "core/map/plane_map.hpp"
+#include "core/registration/bend.hpp"
 #include "core/registration/correspondence_cache.hpp"
 #include "core/registration/icp_result.hpp"
+#include "core/registration/plane_covariance.hpp"
 #include "core/registration/plane_system.hpp"
 
 namespace hulltrack {
@@ -23,6 +25,12 @@ struct PlaneIcpConfig {
   int max_iterations = 50;              // rounds, >= 1
   double translation_epsilon = 0.0002;  // m, of the matched points' centroid
   double rotation_epsilon = radians(0.002);
+};
+
+struct PlaneIcpResult {
+  IcpResult icp;
+  double bend = 0.0;           // of the hull as this fit and what was known before have it, m
+  PlaneCovariance covariance;  // about icp.centre, in the map's axes
 };
 
 /// How well a pose explains a cloud, from the nearest planes alone.
@@ -39,10 +47,11 @@ class PointToPlaneIcp {
   static constexpr double kGate = 0.5;         // m: of fine alignment, from the nearest centre
   static constexpr double kScoreKernel = 0.1;  // m
 
-  explicit PointToPlaneIcp(const PlaneIcpConfig& config);
+  PointToPlaneIcp(const PlaneIcpConfig& config, const BendShape& shape);
 
-  /// Fine alignment: from a start some 0.3 m or less off.
-  [[nodiscard]] IcpResult align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init);
+  /// Fine alignment: from a start some 0.3 m or less off. `bend`: what is known of it.
+  [[nodiscard]] PlaneIcpResult align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init,
+                                     const Bend& bend);
 
   /// Coarse alignment: from a start up to 0.5 m and 1 deg off to within the reach of align(), with few
   /// points.
@@ -51,14 +60,25 @@ class PointToPlaneIcp {
   [[nodiscard]] PlaneScore score(std::span<const Point> source, const PlaneMap& map, const Pose& T);
 
  private:
+  struct Estimate {
+    Pose T;  // since the search
+    double bend;
+  };
+  template <typename Visit>
+  void for_each_pair(std::span<const Correspondence> pairs, const PlaneMap& map, const Estimate& at,
+                     Visit&& visit) const;
   [[nodiscard]] PlaneSystem system_of(std::span<const Correspondence> pairs, const PlaneMap& map,
-                                      const Pose& T_step, double kernel) const;
+                                      const Estimate& at, double kernel) const;
+  [[nodiscard]] PlaneCovariance covariance_of(std::span<const Correspondence> pairs, const PlaneMap& map,
+                                              const Estimate& at, const Bend& known);
   void move(std::span<const Point> source, const Pose& T);
 
   PlaneIcpConfig config_;
+  BendShape shape_;
   CorrespondenceCache correspondences_;
   Cloud moved_;
   std::vector<Neighbour> nearest_;
+  PlaneCovarianceEstimator estimator_;
 };
 
 }  // namespace hulltrack

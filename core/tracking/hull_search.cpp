@@ -15,9 +15,9 @@ constexpr std::size_t kMostStarts = 12;
 constexpr int kApart = 3;
 
 // Stretches that challenges look at, one after the other: hatches are 15 to 35 m apart.
-constexpr double kStretch = 4.0;   // m
-constexpr int kStretches = 20;     // ten to either side
-constexpr double kAcross = 2.0;    // m, how far to the sides
+constexpr double kStretch = 4.0;  // m
+constexpr int kStretches = 20;    // ten to either side
+constexpr double kAcross = 2.0;   // m, how far to the sides
 
 // A moored ship heels by 3 deg before alarms go, trims by 1 deg, and lies along the quay to within 3 deg; the
 // map's own attitude may be as far to the other side. rad
@@ -145,7 +145,8 @@ std::optional<Pose> HullSearch::challenge(std::span<const Point> few_W, const Po
   const auto stretch = static_cast<int>(challenges_++ % kStretches) - kStretches / 2;
   const Pose T_W_H = T_H_W.inverse();
   const Eigen::Vector3d here_H = T_W_H.linear().transpose() * (T_W_H * reference_H_ - reference_H_);
-  const Eigen::Vector3d low = here_H + Eigen::Vector3d(stretch * kStretch, -kAcross, -kCell * OccupancyGrid::kUp);
+  const Eigen::Vector3d low =
+      here_H + Eigen::Vector3d(stretch * kStretch, -kAcross, -kCell * OccupancyGrid::kUp);
   const Eigen::Vector3d high =
       here_H + Eigen::Vector3d((stretch + 1) * kStretch, kAcross, kCell * OccupancyGrid::kUp);
   for (const Eigen::Vector3d& shift_H :

@@ -37,7 +37,8 @@ class HullSearch {
   static constexpr std::size_t kMostPlaces = 12;
 
   /// `map` must outlive this.
-  HullSearch(const Eigen::Vector3d& reference_H, const HullMap& map) : reference_H_(reference_H), map_(&map) {}
+  HullSearch(const Eigen::Vector3d& reference_H, const HullMap& map)
+      : reference_H_(reference_H), map_(&map) {}
 
   /// Forgets all places and finds the starts within `reach`, best first, the PLC's own pose before them.
   /// `R_W_H`: the turn that they take.
@@ -71,7 +72,8 @@ class HullSearch {
  private:
   /// Shifts of the hull in H that make most of the scan fall onto the map, best first: at most `most`.
   [[nodiscard]] std::vector<Eigen::Vector3d> best_shifts(std::span<const Point> few_W, const Box& reach,
-                                                         const Eigen::Matrix3d& R_W_H, std::size_t most) const;
+                                                         const Eigen::Matrix3d& R_W_H,
+                                                         std::size_t most) const;
   [[nodiscard]] Pose shifted(const Eigen::Vector3d& shift_H, const Eigen::Matrix3d& R_W_H) const;
   void add(const Place& place);
   void score_places(std::span<const Point> few_W, PointToPlaneIcp& icp);

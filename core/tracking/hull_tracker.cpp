@@ -10,6 +10,7 @@
 #include "core/geometry/box.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
+#include "core/tracking/pose_covariance.hpp"
 #include "core/tracking/pose_finder.hpp"
 #include "core/tracking/scan_view.hpp"
 #include "core/tracking/visibility.hpp"
@@ -65,7 +66,9 @@ struct HullTracker::Impl {
         views(scan_filter.sensors().size()) {}
 
   TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
-  void register_scan(Evidence& evidence, TrackResult& result);
+  [[nodiscard]] HullDrift drift() const;
+  [[nodiscard]] PlaneIcpResult register_scan(Evidence& evidence, TrackResult& result);
+  void state_certainty(const PlaneIcpResult& found, const JointHistory& joints, TrackResult& result) const;
   void look(const Joints& joints_mid);
   DistanceMetrics measure(const Pose& T_W_H, const KdTree& scan_W);
   IntegrityReport inspect(const Pose& T_W_H);
@@ -90,13 +93,17 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
                        (scan.segments.empty() ||
                         joints.covers(scan.first_firing, scan.last_firing) == JointHistory::Lookup::ok);
   if (evidence.bracketed && !inputs.hold && (inputs.plc_faults & fault::plc_stale) == 0) {
-    scan_filter.run(scan, joints, filtered);
-    register_scan(evidence, result);
+    scan_filter.run(scan, joints, drift(), filtered);
+    const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);
     if (result.registered) {
       examine(evidence, result);
+      state_certainty(found, joints, result);
     }
     search(evidence, result);
+    if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
+      finder.learn_bend(result.time, found);
+    }
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
   memory = std::move(next);
@@ -109,8 +116,9 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   return result;
 }
 
-void HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
-  const IcpResult icp_result = finder.find(filtered.hull_W, result.time, memory);
+PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
+  PlaneIcpResult answer = finder.find(filtered.hull_W, result.time, memory);
+  const IcpResult& icp_result = answer.icp;
   const bool found = icp_result.stop == IcpStop::converged || icp_result.stop == IcpStop::iteration_limit;
   result.registered = found;
   result.converged = icp_result.converged;
@@ -124,6 +132,31 @@ void HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
   if (found) {
     result.T_W_H = icp_result.T_target_source.inverse();
   }
+  return answer;
+}
+
+/// The hull's motion as its last poses have it, about the reference point.
+HullDrift HullTracker::Impl::drift() const {
+  const auto slope = memory.motion.motion();
+  if (!slope || !memory.followed) {
+    return {};
+  }
+  return {config.hull.reference_point + memory.followed->displacement, slope->velocity, slope->rpy_rate};
+}
+
+void HullTracker::Impl::state_certainty(const PlaneIcpResult& found, const JointHistory& joints,
+                                        TrackResult& result) const {
+  if (!found.covariance.valid) {
+    return;
+  }
+  const Eigen::Vector3d& reference_H = config.hull.reference_point;
+  result.covariance =
+      covariance_at_reference(found.covariance.pose, found.icp.centre, reference_H, result.T_W_H.linear()) +
+      covariance_of_joints(scan_filter.machine(), joints, result.time, reference_H + result.displacement);
+  result.sigma_translation = largest_sigma(result.covariance.bottomRightCorner<3, 3>());
+  result.sigma_rotation = largest_sigma(result.covariance.topLeftCorner<3, 3>());
+  result.bend = finder.bend().d;
+  result.sigma_bend = finder.bend().sigma;
 }
 
 void HullTracker::Impl::examine(Evidence& evidence, TrackResult& result) {
@@ -133,7 +166,7 @@ void HullTracker::Impl::examine(Evidence& evidence, TrackResult& result) {
   const IntegrityReport report = inspect(result.T_W_H);
   result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
 
-  if (report.step.solved) {
+  if (report.step.solved) {  // of the published method; the other states its own
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
     result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);
   }

@@ -33,6 +33,10 @@ Pose hull_pose(const Eigen::Vector3d& reference_H, const Eigen::Vector3d& displa
   return T_W_H;
 }
 
+BendShape bend_shape(const Eigen::Vector3d& reference_H, const HullMap& map) {
+  return {reference_H.x(), map.length()};
+}
+
 }  // namespace
 
 PoseFinder::PoseFinder(const TrackerConfig& config, const HullMap& map)
@@ -41,8 +45,10 @@ PoseFinder::PoseFinder(const TrackerConfig& config, const HullMap& map)
       voxel_filter_(config.registration.voxel_size),
       point_icp_({config.registration.max_correspondence_distance, config.registration.max_iterations,
                   config.registration.translation_epsilon, config.registration.rotation_epsilon}),
-      plane_icp_({.max_iterations = config.registration.max_iterations}),
-      search_(config.hull.reference_point, map) {}
+      plane_icp_({.max_iterations = config.registration.max_iterations},
+                 bend_shape(config.hull.reference_point, map)),
+      search_(config.hull.reference_point, map),
+      bend_(map.length()) {}
 
 void PoseFinder::thin(const Cloud& hull_W) {
   voxel_filter_.filter(hull_W, thinned_W_);
@@ -53,7 +59,7 @@ void PoseFinder::thin(const Cloud& hull_W) {
   }
 }
 
-IcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory) {
+PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory) {
   thin(hull_W);
   if (few_W_.size() < kFewestForSearch) {
     search_is_stale_ = true;
@@ -65,9 +71,18 @@ IcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const Heal
     frames_searched_ += search_.complete() ? 1 : 0;
   }
   // The published method: each frame from the PLC alone (Guo 2025, 2.2).
-  return config_.registration.method == RegistrationMethod::point_to_point
-             ? point_icp_.align(thinned_W_, map_->tree(), Pose::Identity())
-             : plane_icp_.align(thinned_W_, map_->planes(), best_start(time, memory));
+  if (config_.registration.method == RegistrationMethod::point_to_point) {
+    PlaneIcpResult published;
+    published.icp = point_icp_.align(thinned_W_, map_->tree(), Pose::Identity());
+    return published;
+  }
+  return plane_icp_.align(thinned_W_, map_->planes(), best_start(time, memory), bend_.now());
+}
+
+void PoseFinder::learn_bend(MeasurementTime time, const PlaneIcpResult& found) {
+  if (found.icp.converged && found.covariance.valid && found.covariance.bend_sigma > 0.0) {
+    bend_.update(time, found.bend + found.covariance.bend_off, found.covariance.bend_sigma);
+  }
 }
 
 Pose PoseFinder::followed(MeasurementTime time, const HealthMemory& memory) const {
@@ -125,7 +140,8 @@ std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
     }
     if (!place.contradicted && !place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
       const Pose start = place.T_H_W;
-      return Rival{start, plane_icp_.align(thinned_W_, map_->planes(), start).T_target_source};
+      return Rival{start,
+                   plane_icp_.align(thinned_W_, map_->planes(), start, bend_.now()).icp.T_target_source};
     }
   }
   return std::nullopt;

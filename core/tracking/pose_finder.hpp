@@ -16,6 +16,7 @@
 #include "core/map/hull_map.hpp"
 #include "core/registration/point_to_plane_icp.hpp"
 #include "core/registration/point_to_point_icp.hpp"
+#include "core/tracking/bend_filter.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/hull_search.hpp"
 #include "core/tracking/tracker_config.hpp"
@@ -27,8 +28,9 @@ class PoseFinder {
   /// `map` must outlive this.
   PoseFinder(const TrackerConfig& config, const HullMap& map);
 
-  /// T_H_W of the scan `hull_W` taken at `time`. `memory`: of the frames before.
-  [[nodiscard]] IcpResult find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory);
+  /// T_H_W of the scan `hull_W` taken at `time`. `memory`: of the frames before. The published method has no
+  /// covariance.
+  [[nodiscard]] PlaneIcpResult find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory);
 
   /// While the place is not unique: another place that explains the scan about as well as T_H_W and has not
   /// been examined yet, aligned with all of the scan.
@@ -37,6 +39,10 @@ class PoseFinder {
     Pose T_H_W;  // what aligning it led to
   };
   [[nodiscard]] std::optional<Rival> rival(const Pose& T_H_W);
+
+  /// Learns the bend from a frame that the scan did not contradict.
+  void learn_bend(MeasurementTime time, const PlaneIcpResult& found);
+  [[nodiscard]] const Bend& bend() const { return bend_.now(); }
 
   /// What examining a pose came to: of find() (which is its own start) or of rival().
   void settle(const Pose& start, const Pose& T_H_W, bool contradicted);
@@ -67,9 +73,10 @@ class PoseFinder {
   PointToPointIcp point_icp_;
   PointToPlaneIcp plane_icp_;
   HullSearch search_;
+  BendFilter bend_;
 
   Cloud thinned_W_;
-  Cloud few_W_;  // of the thinned scan, evenly taken
+  Cloud few_W_;                        // of the thinned scan, evenly taken
   std::optional<Pose> challenger_;     // T_H_W, found by the last frame, explains more than its pose
   std::optional<LastSeen> last_seen_;  // the newest followed pose since the last re-acquire edge
   bool unique_ = false;                // of the memory, when the last frame was judged
