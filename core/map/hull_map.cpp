@@ -23,7 +23,7 @@ HullMap::HullMap(Cloud cloud_H)
       subset_H_(thinned(cloud_H_, kSubsetVoxel)),
       surfels_(compute_surfels(subset_H_, cloud_H_, tree_)),
       occluders_H_(thinned(cloud_H_, kOccluderVoxel)),
-      planes_(cloud_H_, tree_),
+      planes_(cloud_H_, tree_, Relief(cloud_H_)),
       occupancy_(subset_H_) {}
 
 double HullMap::length() const {

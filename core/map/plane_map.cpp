@@ -10,12 +10,21 @@
 namespace hulltrack {
 namespace {
 
-std::vector<PlaneMap::Plane> find_planes(const Cloud& cloud_H, const KdTree& map) {
+// Steeper than this the side of a hold stays bare above its cargo: the slope of the steepest heaps is 40 deg.
+const float kBareCosine = std::cos(0.87F);  // 50 deg
+
+/// Whether other things than this surface may be found where it is while the same ship lies there.
+bool may_change(const Surfel& surfel, const Relief& relief) {
+  const bool lies = std::abs(surfel.normal_H.z()) > kBareCosine;
+  return (lies && relief.in_pit(surfel.centre_H)) || relief.in_covers_place(surfel.centre_H);
+}
+
+std::vector<PlaneMap::Plane> find_planes(const Cloud& cloud_H, const KdTree& map, const Relief& relief) {
   Cloud points_H;
   VoxelFilter(PlaneMap::kSpacing).filter(cloud_H, points_H);
   std::vector<PlaneMap::Plane> planes;
   for (const Surfel& surfel : compute_surfels(points_H, cloud_H, map)) {
-    if (surfel.planar) {
+    if (surfel.planar && !may_change(surfel, relief)) {
       planes.push_back({surfel.centre_H, surfel.normal_H, surfel.surface, 0});
     }
   }
@@ -46,7 +55,7 @@ std::uint32_t number_patches(std::vector<PlaneMap::Plane>& planes) {
 
 }  // namespace
 
-PlaneMap::PlaneMap(const Cloud& cloud_H, const KdTree& map)
-    : planes_(find_planes(cloud_H, map)), patches_(number_patches(planes_)), tree_(centres_of(planes_)) {}
+PlaneMap::PlaneMap(const Cloud& cloud_H, const KdTree& map, const Relief& relief)
+    : planes_(find_planes(cloud_H, map, relief)), patches_(number_patches(planes_)), tree_(centres_of(planes_)) {}
 
 }  // namespace hulltrack

@@ -1,7 +1,8 @@
 // The flat parts of a hull map as small planes, for point to plane registration.
 //
 // One plane a voxel of kSpacing wherever the map is flat around it (surfels.hpp); edges, rails and wires have
-// none, since a point near them says nothing about a plane. Each plane is the fit to about a hundred map
+// none, since a point near them says nothing about a plane. Nor have the floors of holds, which cargo covers,
+// and hatch covers, which move (relief.hpp). Each plane is the fit to about a hundred map
 // points, so that it is a tenth as noisy as one of them. Frame H, metres. Immutable.
 // Cost: 10 us a plane to build, some 100,000 planes for a ship of 120 m; 45 bytes a plane.
 #pragma once
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "core/geometry/cloud.hpp"
+#include "core/map/relief.hpp"
 #include "core/map/surfel.hpp"
 #include "core/search/kdtree.hpp"
 
@@ -30,7 +32,7 @@ class PlaneMap {
   static constexpr float kPatch = 3.0F;  // m
 
   /// `map` is the tree over `cloud_H`.
-  PlaneMap(const Cloud& cloud_H, const KdTree& map);
+  PlaneMap(const Cloud& cloud_H, const KdTree& map, const Relief& relief);
 
   [[nodiscard]] const std::vector<Plane>& planes() const { return planes_; }
   [[nodiscard]] std::uint32_t patches() const { return patches_; }

@@ -68,11 +68,12 @@ struct HullTracker::Impl {
   TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
   [[nodiscard]] HullDrift drift() const;
   [[nodiscard]] PlaneIcpResult register_scan(Evidence& evidence, TrackResult& result);
-  void state_certainty(const PlaneIcpResult& found, const JointHistory& joints, TrackResult& result) const;
+  [[nodiscard]] PlaneStep certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
+                                       TrackResult& result) const;
   void look(const Joints& joints_mid);
   DistanceMetrics measure(const Pose& T_W_H, const KdTree& scan_W);
   IntegrityReport inspect(const Pose& T_W_H);
-  void examine(Evidence& evidence, TrackResult& result);
+  void examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence, TrackResult& result);
   void search(Evidence& evidence, const TrackResult& result);
 };
 
@@ -97,8 +98,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);
     if (result.registered) {
-      examine(evidence, result);
-      state_certainty(found, joints, result);
+      examine(found, joints, evidence, result);
     }
     search(evidence, result);
     if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
@@ -107,7 +107,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
   memory = std::move(next);
-  finder.judged(memory, inputs.reacquire, result.time);
+  finder.judged(memory, inputs.reacquire);
   result.state = verdict.state;
   result.health = verdict.state == State::tracking;
   result.faults = verdict.faults;
@@ -144,32 +144,40 @@ HullDrift HullTracker::Impl::drift() const {
   return {config.hull.reference_point + memory.followed->displacement, slope->velocity, slope->rpy_rate};
 }
 
-void HullTracker::Impl::state_certainty(const PlaneIcpResult& found, const JointHistory& joints,
-                                        TrackResult& result) const {
-  if (!found.covariance.valid) {
-    return;
+/// A point to plane fit asks for no further step; its own covariance says how sure it is.
+PlaneStep HullTracker::Impl::certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
+                                          TrackResult& result) const {
+  PlaneStep step;
+  step.solved = found.covariance.valid && found.icp.free_directions == 0;
+  if (step.solved) {
+    const Eigen::Vector3d& reference_H = config.hull.reference_point;
+    result.covariance = covariance_at_reference(found.covariance.pose, found.icp.centre, reference_H,
+                                                result.T_W_H.linear()) +
+                        covariance_of_joints(scan_filter.machine(), joints, result.time,
+                                             reference_H + result.displacement);
+    step.covariance_translation = result.covariance.bottomRightCorner<3, 3>();
+    step.covariance_rotation = result.covariance.topLeftCorner<3, 3>();
   }
-  const Eigen::Vector3d& reference_H = config.hull.reference_point;
-  result.covariance =
-      covariance_at_reference(found.covariance.pose, found.icp.centre, reference_H, result.T_W_H.linear()) +
-      covariance_of_joints(scan_filter.machine(), joints, result.time, reference_H + result.displacement);
-  result.sigma_translation = largest_sigma(result.covariance.bottomRightCorner<3, 3>());
-  result.sigma_rotation = largest_sigma(result.covariance.topLeftCorner<3, 3>());
-  result.bend = finder.bend().d;
-  result.sigma_bend = finder.bend().sigma;
+  return step;
 }
 
-void HullTracker::Impl::examine(Evidence& evidence, TrackResult& result) {
+void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
+                                TrackResult& result) {
   const Eigen::Vector3d& reference_H = config.hull.reference_point;
   result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
-  const IntegrityReport report = inspect(result.T_W_H);
+  IntegrityReport report = inspect(result.T_W_H);
   result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
 
-  if (report.step.solved) {  // of the published method; the other states its own
+  if (config.registration.method == RegistrationMethod::automatic) {
+    report.step = certainty_of(found, joints, result);
+  }
+  if (report.step.solved) {
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
     result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);
   }
+  result.bend = finder.bend().d;
+  result.sigma_bend = finder.bend().sigma;
   evidence.metrics = result.metrics;
   evidence.displacement = result.displacement;
   evidence.rotation = result.T_W_H.linear();

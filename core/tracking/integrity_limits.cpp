@@ -11,9 +11,9 @@ namespace {
 // step that the scan asks for, give or take the step's own error: kSigmas of an inflated sigma are four of
 // the plain one. In 800 simulated frames of a 16-line LiDAR the step's error was 0.7 of the inflated sigma
 // (RMS).
-constexpr double kTranslationBudget = 0.10;
-const double kRotationBudget = radians(0.30);
-constexpr double kSigmas = 2.0;
+constexpr double kTranslationBudget = 0.05;
+const double kRotationBudget = radians(0.10);
+constexpr double kSigmas = 3.0;
 // When the uncertainty alone takes this share of the budget the geometry, not the pose, is to blame.
 constexpr double kShareOfSigma = 0.75;
 

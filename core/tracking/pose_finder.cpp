@@ -113,7 +113,11 @@ Pose PoseFinder::best_start(MeasurementTime time, const HealthMemory& memory) {
   }
   offer(Pose::Identity(), 1.0);
   if (challenger_) {
+    const double others = best_score;
     offer(*challenger_, kClearlyBetter);
+    if (best_score == others) {
+      challenger_.reset();
+    }
   }
   if (!memory.unique) {
     for (const HullSearch::Place& place : search_.places()) {
@@ -127,6 +131,10 @@ Pose PoseFinder::best_start(MeasurementTime time, const HealthMemory& memory) {
 
 std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
   if (few_W_.size() < kFewestForSearch) {
+    return std::nullopt;
+  }
+  if (unique_ && challenger_) {
+    challenger_ = T_H_W;  // it won
     return std::nullopt;
   }
   if (unique_) {
@@ -168,12 +176,12 @@ SearchEvidence PoseFinder::evidence(const Pose& T_H_W) const {
   return evidence;
 }
 
-void PoseFinder::judged(const HealthMemory& memory, bool reacquire, MeasurementTime time) {
+void PoseFinder::judged(const HealthMemory& memory, bool reacquire) {
   if (reacquire) {
     last_seen_.reset();
   }
   if (memory.followed && memory.unique) {
-    last_seen_ = LastSeen{time, memory.followed->displacement, memory.followed->rotation};
+    last_seen_ = memory.followed;
   }
   const bool searched_in_vain = !memory.unique && frames_searched_ >= kFramesUntilSearchedAgain;
   if (reacquire || searched_in_vain || (unique_ && !memory.unique)) {

@@ -51,17 +51,12 @@ class PoseFinder {
   [[nodiscard]] SearchEvidence evidence(const Pose& T_H_W) const;
 
   /// To be called when the frame is judged: begins a search when it is due.
-  void judged(const HealthMemory& memory, bool reacquire, MeasurementTime time);
+  void judged(const HealthMemory& memory, bool reacquire);
 
   /// The thinned scan of the last find(), W.
   [[nodiscard]] const Cloud& thinned_W() const { return thinned_W_; }
 
  private:
-  struct LastSeen {
-    MeasurementTime time;
-    Eigen::Vector3d displacement;
-    Eigen::Matrix3d rotation;
-  };
   void thin(const Cloud& hull_W);
   [[nodiscard]] Pose best_start(MeasurementTime time, const HealthMemory& memory);
   [[nodiscard]] Pose followed(MeasurementTime time, const HealthMemory& memory) const;
@@ -78,7 +73,7 @@ class PoseFinder {
   Cloud thinned_W_;
   Cloud few_W_;                        // of the thinned scan, evenly taken
   std::optional<Pose> challenger_;     // T_H_W, found by the last frame, explains more than its pose
-  std::optional<LastSeen> last_seen_;  // the newest followed pose since the last re-acquire edge
+  std::optional<HealthMemory::FollowedPose> last_seen_;  // since the last re-acquire edge
   bool unique_ = false;                // of the memory, when the last frame was judged
   bool search_is_stale_ = true;        // it begins anew with the next scan that shows enough
   int frames_searched_ = 0;            // since all starts were tried

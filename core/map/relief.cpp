@@ -1,0 +1,145 @@
+#include "core/map/relief.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/geometry/box.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr float kNothing = -std::numeric_limits<float>::infinity();
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr float kNoRim = std::numeric_limits<float>::quiet_NaN();
+constexpr std::array<std::pair<int, int>, 8> kDirections{
+    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+// Above a rim by less than this is the rim itself: sheer along a hatch, rest bars, noise.
+constexpr float kOnRim = 0.15F;  // m
+
+int cells(float metres) { return static_cast<int>(std::lround(metres / Relief::kCell)); }
+
+}  // namespace
+
+Relief::Relief(std::span<const Point> cloud_H) {
+  const Box box = bounding_box(cloud_H);
+  corner_ = box.min;
+  columns_ = static_cast<int>((box.max.x() - box.min.x()) / kCell) + 1;
+  rows_ = static_cast<int>((box.max.y() - box.min.y()) / kCell) + 1;
+  top_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kNothing);
+  for (const Point& p : cloud_H) {
+    float& top = top_[index(cell_of(p))];
+    top = std::max(top, p.z());
+  }
+  find_pits();
+  raise_covers_place();
+}
+
+Relief::Cell Relief::cell_of(const Point& p) const {
+  return {static_cast<int>(std::floor((p.x() - corner_.x()) / kCell)),
+          static_cast<int>(std::floor((p.y() - corner_.y()) / kCell))};
+}
+
+/// The least, over all directions, of the highest structure within kReach.
+float Relief::lowest_horizon(Cell from) const {
+  float lowest = kNowhere;
+  for (const auto& [dc, dr] : kDirections) {
+    const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * kCell : kCell;
+    const int steps = static_cast<int>(kReach / stride);
+    float highest = kNothing;
+    for (int i = 1; i <= steps; ++i) {
+      const Cell c{from.column + i * dc, from.row + i * dr};
+      if (!inside(c)) {
+        break;
+      }
+      highest = std::max(highest, top_[index(c)]);
+    }
+    lowest = std::min(lowest, highest);
+  }
+  return lowest;
+}
+
+bool Relief::in_pit(const Point& p) const {
+  const Cell c = cell_of(p);
+  return inside(c) && lowest_horizon(c) >= p.z() + kDepth;
+}
+
+void Relief::find_pits() {
+  rim_.assign(top_.size(), kNoRim);
+  std::vector<Cell> grown;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const Cell c{column, row};
+      const float top = top_[index(c)];
+      if (const float horizon = lowest_horizon(c); top != kNothing && horizon >= top + kDepth) {
+        rim_[index(c)] = horizon;
+        grown.push_back(c);
+      }
+    }
+  }
+  // What no survey saw beside a pit is pit: the shadow under a coaming.
+  while (!grown.empty()) {
+    const Cell from = grown.back();
+    grown.pop_back();
+    for (const auto& [dc, dr] : kDirections) {
+      const Cell c{from.column + dc, from.row + dr};
+      if (inside(c) && top_[index(c)] == kNothing && std::isnan(rim_[index(c)])) {
+        if (const float horizon = lowest_horizon(c); horizon != kNothing) {
+          rim_[index(c)] = horizon;
+          grown.push_back(c);
+        }
+      }
+    }
+  }
+}
+
+void Relief::raise_covers_place() {
+  covers_from_.assign(top_.size(), kNowhere);
+  const int reach = cells(kCoversReach);
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const float rim = rim_[index({column, row})];
+      if (std::isnan(rim)) {
+        continue;
+      }
+      for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); ++r) {
+        for (int c = std::max(0, column - reach); c <= std::min(columns_ - 1, column + reach); ++c) {
+          float& from = covers_from_[index({c, r})];
+          from = std::min(from, rim + kOnRim);
+        }
+      }
+    }
+  }
+}
+
+bool Relief::in_covers_place(const Point& p) const {
+  const Cell c = cell_of(p);
+  return inside(c) && p.z() > covers_from_[index(c)];
+}
+
+std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
+  const Cell at = cell_of(p);
+  const int far = cells(reach);
+  std::optional<Point> best;
+  float best2 = reach * reach;
+  const auto is_pit = [&](Cell c) { return inside(c) && !std::isnan(rim_[index(c)]); };
+  for (int dr = -far; dr <= far; ++dr) {
+    for (int dc = -far; dc <= far; ++dc) {
+      const Cell c{at.column + dc, at.row + dr};
+      const Point q(corner_.x() + (static_cast<float>(c.column) + 0.5F) * kCell,
+                    corner_.y() + (static_cast<float>(c.row) + 0.5F) * kCell, p.z());
+      const float distance2 = (q - p).squaredNorm();
+      if (distance2 < best2 && is_pit(c) &&
+          std::all_of(kDirections.begin(), kDirections.end(),
+                      [&](const auto& d) { return is_pit({c.column + d.first, c.row + d.second}); })) {
+        best2 = distance2;
+        best = q;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace hulltrack
