@@ -9,6 +9,10 @@ namespace {
 using Vector7 = PlaneSystem::Vector7;
 using Matrix7 = PlaneSystem::Matrix7;
 
+// The fit itself takes up as many patches as it has parameters (n - 6 are left to judge by), and errors measured
+// by a covariance that is itself estimated from m patches look larger by m / (m - 7) (Hotelling's T-squared).
+constexpr double kParameters = 6.0;
+
 Twist scale() {
   Twist s;
   s << Eigen::Vector3d::Constant(1.0 / PlaneSystem::kLever), Eigen::Vector3d::Ones();
@@ -38,9 +42,21 @@ void PlaneCovarianceEstimator::add(const PlaneSystem& system, std::uint32_t patc
   }
 }
 
+/// As many patches with equally many pairs would scatter like these (Kish's effective sample size).
+double PlaneCovarianceEstimator::patches_of_equal_worth() const {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const std::uint32_t patch : touched_) {
+    sum += pairs_[patch];
+    squares += static_cast<double>(pairs_[patch]) * pairs_[patch];
+  }
+  return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
 PlaneCovariance PlaneCovarianceEstimator::estimate(const Bend& known) const {
   PlaneCovariance out;
-  if (touched_.size() < kFewestPatches) {
+  const double n = patches_of_equal_worth();
+  if (!(n >= kFewestPatches)) {
     return out;
   }
   const Matrix6 A = A_.topLeftCorner<6, 6>();
@@ -62,8 +78,7 @@ PlaneCovariance PlaneCovarianceEstimator::estimate(const Bend& known) const {
     bend_spread += bend * bend;
     bend_sum += bend;
   }
-  const auto n = static_cast<double>(touched_.size());
-  const double fitted = n / (n - 6.0);  // the fit itself took up six patches' worth
+  const double fitted = n / (n - kParameters - (kParameters + 1.0));
   out.valid = true;
   out.pose = fitted * A_inverse * spread * A_inverse;
   out.pose += known.sigma * known.sigma * by_bend * by_bend.transpose();

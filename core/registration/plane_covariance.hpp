@@ -27,8 +27,8 @@ struct PlaneCovariance {
 
 class PlaneCovarianceEstimator {
  public:
-  /// Patches that a spread can be judged from: six parameters take six of them.
-  static constexpr std::uint32_t kFewestPatches = 15;
+  /// Patches that a spread can be judged from: the estimate's own uncertainty triples it.
+  static constexpr double kFewestPatches = 20.0;
 
   void reset(std::uint32_t patches);
   void add(const PlaneSystem& system, std::uint32_t patch, const Eigen::Vector3d& p, const Eigen::Vector3d& n,
@@ -38,6 +38,8 @@ class PlaneCovarianceEstimator {
   [[nodiscard]] PlaneCovariance estimate(const Bend& known) const;
 
  private:
+  [[nodiscard]] double patches_of_equal_worth() const;
+
   PlaneSystem::Matrix7 A_ = PlaneSystem::Matrix7::Zero();
   std::vector<PlaneSystem::Vector7> sums_;  // per patch
   std::vector<std::uint32_t> touched_;      // patches with a pair

@@ -70,6 +70,7 @@ class PoseFinder {
   HullSearch search_;
   BendFilter bend_;
 
+  Cloud askew_;  // the scan in the voxels' axes
   Cloud thinned_W_;
   Cloud few_W_;                        // of the thinned scan, evenly taken
   std::optional<Pose> challenger_;     // T_H_W, found by the last frame, explains more than its pose
