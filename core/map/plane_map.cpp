@@ -56,6 +56,8 @@ std::uint32_t number_patches(std::vector<PlaneMap::Plane>& planes) {
 }  // namespace
 
 PlaneMap::PlaneMap(const Cloud& cloud_H, const KdTree& map, const Relief& relief)
-    : planes_(find_planes(cloud_H, map, relief)), patches_(number_patches(planes_)), tree_(centres_of(planes_)) {}
+    : planes_(find_planes(cloud_H, map, relief)),
+      patches_(number_patches(planes_)),
+      tree_(centres_of(planes_)) {}
 
 }  // namespace hulltrack

@@ -132,8 +132,9 @@ std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
                     corner_.y() + (static_cast<float>(c.row) + 0.5F) * kCell, p.z());
       const float distance2 = (q - p).squaredNorm();
       if (distance2 < best2 && is_pit(c) &&
-          std::all_of(kDirections.begin(), kDirections.end(),
-                      [&](const auto& d) { return is_pit({c.column + d.first, c.row + d.second}); })) {
+          std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
+            return is_pit({c.column + d.first, c.row + d.second});
+          })) {
         best2 = distance2;
         best = q;
       }

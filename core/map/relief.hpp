@@ -59,8 +59,8 @@ class Relief {
   Point corner_ = Point::Zero();
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<float> top_;         // per cell: its highest point; -infinity without one
-  std::vector<float> rim_;         // per cell of a pit: the height of its rim; NaN elsewhere
+  std::vector<float> top_;          // per cell: its highest point; -infinity without one
+  std::vector<float> rim_;          // per cell of a pit: the height of its rim; NaN elsewhere
   std::vector<float> covers_from_;  // per cell: above this height is the covers' place; infinity = nowhere
 };
 

@@ -9,10 +9,6 @@ namespace {
 using Vector7 = PlaneSystem::Vector7;
 using Matrix7 = PlaneSystem::Matrix7;
 
-// The fit itself takes up as many patches as it has parameters (n - 6 are left to judge by), and errors measured
-// by a covariance that is itself estimated from m patches look larger by m / (m - 7) (Hotelling's T-squared).
-constexpr double kParameters = 6.0;
-
 Twist scale() {
   Twist s;
   s << Eigen::Vector3d::Constant(1.0 / PlaneSystem::kLever), Eigen::Vector3d::Ones();
@@ -30,62 +26,54 @@ void PlaneCovarianceEstimator::reset(std::uint32_t patches) {
   sums_.resize(patches, Vector7::Zero());
   pairs_.resize(patches, 0);
   A_.setZero();
+  B_.setZero();
 }
 
 void PlaneCovarianceEstimator::add(const PlaneSystem& system, std::uint32_t patch, const Eigen::Vector3d& p,
                                    const Eigen::Vector3d& n, double r, double rise) {
   const Vector7 j = system.jacobian(p, n, rise);
   A_.noalias() += system.slope_of(r) * j * j.transpose();
-  sums_[patch] -= system.weight_of(r) * r * j;
+  const Vector7 s = -system.weight_of(r) * r * j;
+  B_.noalias() += s * s.transpose();
+  sums_[patch] += s;
   if (pairs_[patch]++ == 0) {
     touched_.push_back(patch);
   }
 }
 
-/// As many patches with equally many pairs would scatter like these (Kish's effective sample size).
-double PlaneCovarianceEstimator::patches_of_equal_worth() const {
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const std::uint32_t patch : touched_) {
-    sum += pairs_[patch];
-    squares += static_cast<double>(pairs_[patch]) * pairs_[patch];
-  }
-  return squares > 0.0 ? sum * sum / squares : 0.0;
-}
-
-PlaneCovariance PlaneCovarianceEstimator::estimate(const Bend& known) const {
+PlaneCovariance PlaneCovarianceEstimator::estimate() const {
+  constexpr double kParameters = 6.0;  // the fit takes up as many patches
   PlaneCovariance out;
-  const double n = patches_of_equal_worth();
-  if (!(n >= kFewestPatches)) {
-    return out;
-  }
-  const Matrix6 A = A_.topLeftCorner<6, 6>();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(A);
-  if (!(eigen.eigenvalues()[0] >= 0.2 * PlaneSystem::kFewestPairs)) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(A_.topLeftCorner<6, 6>()));
+  // The curvature is that of pairs within half a kernel: a fifth of them, and more.
+  if (touched_.size() < kFewestPatches || !(eigen.eigenvalues()[0] >= 0.2 * PlaneSystem::kFewestPairs)) {
     return out;
   }
   const Matrix6 A_inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                             eigen.eigenvectors().transpose();
-  const Twist by_bend = A_inverse * A_.topRightCorner<6, 1>();  // by how much a metre of bend moves the pose
-  const double bend_curvature = A_(6, 6) - A_.topRightCorner<6, 1>().dot(by_bend);
-  Matrix6 spread = Matrix6::Zero();
+  const Twist by_bend = A_inverse * A_.topRightCorner<6, 1>();
+  Vector7 bend_alone;  // what is left of a sum for the bend when the pose has adapted
+  bend_alone << -by_bend, 1.0;
+  Matrix6 B_patches = Matrix6::Zero();
   double bend_spread = 0.0;
   double bend_sum = 0.0;
   for (const std::uint32_t patch : touched_) {
     const Vector7& s = sums_[patch];
-    spread.noalias() += s.head<6>() * s.head<6>().transpose();
-    const double bend = s[6] - by_bend.dot(s.head<6>());
+    B_patches.noalias() += s.head<6>() * s.head<6>().transpose();
+    const double bend = bend_alone.dot(s);
     bend_spread += bend * bend;
     bend_sum += bend;
   }
-  const double fitted = n / (n - kParameters - (kParameters + 1.0));
+  const auto n = static_cast<double>(touched_.size());
+  const Matrix6 B = B_.topLeftCorner<6, 6>();
   out.valid = true;
-  out.pose = fitted * A_inverse * spread * A_inverse;
-  out.pose += known.sigma * known.sigma * by_bend * by_bend.transpose();
-  out.pose = scale().asDiagonal() * out.pose * scale().asDiagonal();
+  out.shared = n / (n - kParameters) * (B.ldlt().solve(B_patches)).trace() / 6.0;
+  out.pose = scale().asDiagonal() * (A_inverse * B * A_inverse) * scale().asDiagonal();
+  out.by_bend = scale().asDiagonal() * by_bend;
+  const double bend_curvature = bend_alone.dot(A_.col(6));
   if (bend_curvature > 1e-3) {
     out.bend_off = bend_sum / bend_curvature;
-    out.bend_sigma = std::sqrt(fitted * bend_spread) / bend_curvature;
+    out.bend_sigma = std::sqrt(n / (n - kParameters) * bend_spread) / bend_curvature;
   }
   return out;
 }

@@ -90,14 +90,14 @@ PlaneSystem PointToPlaneIcp::system_of(std::span<const Correspondence> pairs, co
 }
 
 PlaneCovariance PointToPlaneIcp::covariance_of(std::span<const Correspondence> pairs, const PlaneMap& map,
-                                               const Estimate& at, const Bend& known) {
+                                               const Estimate& at) {
   const PlaneSystem system = system_of(pairs, map, at, kKernels.back());
   estimator_.reset(map.patches());
   for_each_pair(pairs, map, at,
                 [&](const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double r, double rise) {
                   estimator_.add(system, plane.patch, p, plane.normal_H.cast<double>(), r, rise);
                 });
-  return estimator_.estimate(known);
+  return estimator_.estimate();
 }
 
 PlaneIcpResult PointToPlaneIcp::align(std::span<const Point> source, const PlaneMap& map, const Pose& T_init,
@@ -139,7 +139,7 @@ PlaneIcpResult PointToPlaneIcp::align(std::span<const Point> source, const Plane
   if (result.converged) {
     result.stop = IcpStop::converged;
   }
-  out.covariance = covariance_of(pairs, map, at, bend);
+  out.covariance = covariance_of(pairs, map, at);
   return out;
 }
 

@@ -70,7 +70,7 @@ class PointToPlaneIcp {
   [[nodiscard]] PlaneSystem system_of(std::span<const Correspondence> pairs, const PlaneMap& map,
                                       const Estimate& at, double kernel) const;
   [[nodiscard]] PlaneCovariance covariance_of(std::span<const Correspondence> pairs, const PlaneMap& map,
-                                              const Estimate& at, const Bend& known);
+                                              const Estimate& at);
   void move(std::span<const Point> source, const Pose& T);
 
   PlaneIcpConfig config_;

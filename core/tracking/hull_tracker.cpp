@@ -73,7 +73,8 @@ struct HullTracker::Impl {
   void look(const Joints& joints_mid);
   DistanceMetrics measure(const Pose& T_W_H, const KdTree& scan_W);
   IntegrityReport inspect(const Pose& T_W_H);
-  void examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence, TrackResult& result);
+  void examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
+               TrackResult& result);
   void search(Evidence& evidence, const TrackResult& result);
 };
 
@@ -102,7 +103,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     }
     search(evidence, result);
     if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
-      finder.learn_bend(result.time, found);
+      finder.learn(result.time, found);
     }
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
@@ -151,10 +152,10 @@ PlaneStep HullTracker::Impl::certainty_of(const PlaneIcpResult& found, const Joi
   step.solved = found.covariance.valid && found.icp.free_directions == 0;
   if (step.solved) {
     const Eigen::Vector3d& reference_H = config.hull.reference_point;
-    result.covariance = covariance_at_reference(found.covariance.pose, found.icp.centre, reference_H,
-                                                result.T_W_H.linear()) +
-                        covariance_of_joints(scan_filter.machine(), joints, result.time,
-                                             reference_H + result.displacement);
+    result.covariance =
+        covariance_at_reference(finder.covariance(found.covariance), found.icp.centre, reference_H,
+                                result.T_W_H.linear()) +
+        covariance_of_joints(scan_filter.machine(), joints, result.time, reference_H + result.displacement);
     step.covariance_translation = result.covariance.bottomRightCorner<3, 3>();
     step.covariance_rotation = result.covariance.topLeftCorner<3, 3>();
   }

@@ -31,6 +31,11 @@ constexpr double kFarthestUnseen = 60.0;
 const Eigen::Matrix3f kAskew =
     Eigen::Quaternionf::FromTwoVectors(Point::UnitZ(), Point(1.0F, 1.0F, 1.0F)).toRotationMatrix();
 
+// How much more patches of residuals scatter than single ones would: before any frame has told, and how much
+// of a frame's own figure (a dozen per cent off) is believed.
+constexpr double kSharedAtFirst = 2.0;
+constexpr double kSharedGain = 0.1;
+
 Pose hull_pose(const Eigen::Vector3d& reference_H, const Eigen::Vector3d& displacement,
                const Eigen::Matrix3d& R) {
   Pose T_W_H = Pose::Identity();
@@ -54,7 +59,8 @@ PoseFinder::PoseFinder(const TrackerConfig& config, const HullMap& map)
       plane_icp_({.max_iterations = config.registration.max_iterations},
                  bend_shape(config.hull.reference_point, map)),
       search_(config.hull.reference_point, map),
-      bend_(map.length()) {}
+      bend_(map.length()),
+      shared_(kSharedAtFirst) {}
 
 void PoseFinder::thin(const Cloud& hull_W) {
   if (config_.registration.method == RegistrationMethod::point_to_point) {
@@ -96,10 +102,19 @@ PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const
   return plane_icp_.align(thinned_W_, map_->planes(), best_start(time, memory), bend_.now());
 }
 
-void PoseFinder::learn_bend(MeasurementTime time, const PlaneIcpResult& found) {
-  if (found.icp.converged && found.covariance.valid && found.covariance.bend_sigma > 0.0) {
+void PoseFinder::learn(MeasurementTime time, const PlaneIcpResult& found) {
+  if (!found.icp.converged || !found.covariance.valid) {
+    return;
+  }
+  shared_ += kSharedGain * (found.covariance.shared - shared_);
+  if (found.covariance.bend_sigma > 0.0) {
     bend_.update(time, found.bend + found.covariance.bend_off, found.covariance.bend_sigma);
   }
+}
+
+Matrix6 PoseFinder::covariance(const PlaneCovariance& fit) const {
+  const double sigma = bend_.now().sigma;
+  return std::max(1.0, shared_) * fit.pose + sigma * sigma * fit.by_bend * fit.by_bend.transpose();
 }
 
 Pose PoseFinder::followed(MeasurementTime time, const HealthMemory& memory) const {

@@ -40,9 +40,11 @@ class PoseFinder {
   };
   [[nodiscard]] std::optional<Rival> rival(const Pose& T_H_W);
 
-  /// Learns the bend from a frame that the scan did not contradict.
-  void learn_bend(MeasurementTime time, const PlaneIcpResult& found);
+  /// Learns from a frame that the scan did not contradict: the bend, and how much residuals share.
+  void learn(MeasurementTime time, const PlaneIcpResult& found);
   [[nodiscard]] const Bend& bend() const { return bend_.now(); }
+  /// Of the answer of find(), about its centre in H.
+  [[nodiscard]] Matrix6 covariance(const PlaneCovariance& fit) const;
 
   /// What examining a pose came to: of find() (which is its own start) or of rival().
   void settle(const Pose& start, const Pose& T_H_W, bool contradicted);
@@ -69,15 +71,16 @@ class PoseFinder {
   PointToPlaneIcp plane_icp_;
   HullSearch search_;
   BendFilter bend_;
+  double shared_;  // mean of PlaneCovariance::shared
 
   Cloud askew_;  // the scan in the voxels' axes
   Cloud thinned_W_;
-  Cloud few_W_;                        // of the thinned scan, evenly taken
-  std::optional<Pose> challenger_;     // T_H_W, found by the last frame, explains more than its pose
+  Cloud few_W_;                     // of the thinned scan, evenly taken
+  std::optional<Pose> challenger_;  // T_H_W, found by the last frame, explains more than its pose
   std::optional<HealthMemory::FollowedPose> last_seen_;  // since the last re-acquire edge
-  bool unique_ = false;                // of the memory, when the last frame was judged
-  bool search_is_stale_ = true;        // it begins anew with the next scan that shows enough
-  int frames_searched_ = 0;            // since all starts were tried
+  bool unique_ = false;                                  // of the memory, when the last frame was judged
+  bool search_is_stale_ = true;  // it begins anew with the next scan that shows enough
+  int frames_searched_ = 0;      // since all starts were tried
 };
 
 }  // namespace hulltrack
