@@ -8,6 +8,7 @@
 
 #include "core/kinematics/joint_history.hpp"
 #include "daemon/simulator/loader_machine.hpp"
+#include "daemon/simulator/ship_mesh.hpp"
 #include "daemon/simulator/simulated_scans.hpp"
 #include "daemon/simulator/survey.hpp"
 
@@ -213,6 +214,80 @@ TEST(SimulatedBerth, TheShipLeavesWhenTold) {
   EXPECT_EQ(apart(10), 0.0);
   EXPECT_NEAR(apart(15), 0.5 * 0.08 * 25.0, 1e-9);  // hulltrack(1): 0.08 m/s2
   EXPECT_FALSE(SimulatedBerth::create({.scenario = "static", .leave_at = 10.0}).ok());
+}
+
+/// Height in W of the first surface straight below (x, y) at time t.
+RayHit below(const SimulatedBerth& berth, double t, double x, double y) {
+  constexpr double kFrom = 60.0;  // m, above everything
+  const Pose T_L_W = berth.world().T_W_L(t).inverse();
+  const Eigen::Vector3d origin = T_L_W * Eigen::Vector3d(x, y, kFrom);
+  const Eigen::Vector3d down = T_L_W.linear() * Eigen::Vector3d(0.0, 0.0, -1.0);
+  auto hit = berth.world().cast(berth.world().sweep(t, t + 0.001), t, origin.cast<float>(),
+                                down.cast<float>(), 200.0F);
+  EXPECT_TRUE(hit);
+  hit->distance = static_cast<float>(kFrom) - hit->distance;
+  return *hit;
+}
+
+TEST(SimulatedBerth, TheWaterFollowsTheEbbAndTheShipSinksByEbbAndCargo) {
+  const auto berth = make({.scenario = "draft", .seed = 2});
+  for (const double t : {0.0, 50.0, 100.0, 139.0}) {
+    const RayHit water = below(*berth, t, 0.0, 60.0);
+    EXPECT_EQ(water.material, Material::water);
+    // 0.02 m/s after a ramp of 2 s, in which it falls by half as much.
+    EXPECT_NEAR(static_cast<double>(water.distance), -5.0 - (t > 0.0 ? 0.02 * (t - 1.0) : 0.0), 1e-3) << t;
+  }
+  EXPECT_EQ(below(*berth, 0.0, 0.0, -30.0).material, below(*berth, 141.0, 0.0, -30.0).material);
+  const double light = static_cast<double>(below(*berth, 0.0, 1.5, 12.0).distance);
+  const double laden = static_cast<double>(below(*berth, 141.0, 1.5, 12.0).distance);
+  EXPECT_NEAR(laden - light, -6.95, 0.25);  // cross deck; heave and pitch move it a little
+}
+
+TEST(SimulatedBerth, TheCraneDrivesPastAlongTheQuaysEdge) {
+  const auto berth = make({.scenario = "crane", .seed = 2});
+  const auto carrier_at = [&](double t, double x) { return below(*berth, t, x, -1.4).distance > 1.0F; };
+  EXPECT_TRUE(carrier_at(0.0, -28.0));
+  EXPECT_FALSE(carrier_at(0.0, 0.0));
+  // 1 s of rest, 3 s to 1.8 m/s: 28 m after 1 + 1.5 + 28 / 1.8 s.
+  EXPECT_TRUE(carrier_at(18.06, 0.0));
+  EXPECT_FALSE(carrier_at(18.06, -28.0));
+  const RayHit load = below(*berth, 18.06, 1.2, 5.7);  // beside the jib, over the deck's edge
+  EXPECT_NEAR(load.distance, 4.6F, 0.01F);
+}
+
+TEST(ShipMesh, MovedCoversChangeNothingButTheCovers) {
+  const RayScene mapped(ship_mesh(berth_ship()));
+  const RayScene moved(ship_mesh(ship_with_moved_covers()));
+  const auto height = [](const RayScene& ship, float x, float y) {
+    const auto hit = ship.cast({x, y, 60.0F}, {0.0F, 0.0F, -1.0F}, 100.0F);
+    return hit ? 60.0F - hit->distance : -100.0F;
+  };
+  for (float x = -59.0F; x < 59.0F; x += 0.31F)
+    for (const float y : {-9.5F, -8.4F, -7.4F, 7.4F, 8.4F, 9.5F})
+      EXPECT_EQ(height(mapped, x, y), height(moved, x, y)) << x << ' ' << y;
+  // Closed: steel over the first and the last hatch, where the map looks into the hold.
+  for (const std::size_t i : {0U, 3U}) {
+    const Hatch hatch = berth_ship().hatches[i];
+    EXPECT_LT(height(mapped, hatch.centre + 0.3F, 0.0F), 0.0F);
+    EXPECT_GT(height(moved, hatch.centre + 0.3F, 0.0F), hatch.coaming_height + 0.5F);
+  }
+}
+
+TEST(ShipMesh, CargoBeginsAsAThinLayerAndGrowsBelowTheDeck) {
+  const ShipDesign ship = berth_ship();
+  const auto top = [&](float fill) {
+    float highest = -1e9F;
+    for (const Point& p : cargo_mesh(ship, fill).vertices) highest = std::max(highest, p.z());
+    return highest;
+  };
+  EXPECT_LT(top(0.005F), ship.tank_top + 0.2F);
+  float before = ship.tank_top;
+  for (float fill = 0.025F; fill < 0.96F; fill += 0.025F) {
+    EXPECT_GT(top(fill), before) << fill;
+    before = top(fill);
+  }
+  EXPECT_LT(before, 0.0F);
+  EXPECT_GT(before, -2.5F);
 }
 
 }  // namespace
