@@ -23,8 +23,18 @@ HullMap::HullMap(Cloud cloud_H)
       subset_H_(thinned(cloud_H_, kSubsetVoxel)),
       surfels_(compute_surfels(subset_H_, cloud_H_, tree_)),
       occluders_H_(thinned(cloud_H_, kOccluderVoxel)),
-      planes_(cloud_H_, tree_, Relief(cloud_H_)),
-      occupancy_(subset_H_) {}
+      relief_(cloud_H_),
+      planes_(cloud_H_, tree_, relief_),
+      occupancy_(subset_H_) {
+  orient_surfels(subset_H_, tree_, surfels_);
+  rims_ = find_rims(cloud_H_, tree_, relief_);
+  patches_ = number_patches(subset_H_, surfels_, rims_, relief_);
+  measure_rims(cloud_H_, tree_, rims_);
+  probes_H_ = subset_H_;
+  for (const RimPoint& rim : rims_) {
+    probes_H_.push_back(rim.p_H);
+  }
+}
 
 double HullMap::length() const {
   constexpr float kShortest = 1.0F;  // a map of one point is a map

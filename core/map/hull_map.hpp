@@ -11,6 +11,8 @@
 #include "core/geometry/point_blocks.hpp"
 #include "core/map/occupancy_grid.hpp"
 #include "core/map/plane_map.hpp"
+#include "core/map/patches.hpp"
+#include "core/map/relief.hpp"
 #include "core/map/surfel.hpp"
 #include "core/search/kdtree.hpp"
 
@@ -33,6 +35,14 @@ class HullMap {
   /// The metric subset, and for each of its points the surface around it.
   [[nodiscard]] const Cloud& subset_H() const { return subset_H_; }
   [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
+
+  /// The tops of the hatches' coamings, and how many patches these and the surfels form.
+  [[nodiscard]] const std::vector<RimPoint>& rims() const { return rims_; }
+  [[nodiscard]] std::uint32_t patches() const { return patches_; }
+
+  /// What is looked for in a scan: the metric subset, then the rim points.
+  [[nodiscard]] const Cloud& probes_H() const { return probes_H_; }
+
   [[nodiscard]] const PointBlocks& occluders_H() const { return occluders_H_; }
 
   /// The flat parts, for registration.
@@ -45,7 +55,11 @@ class HullMap {
   KdTree tree_;
   Cloud subset_H_;
   std::vector<Surfel> surfels_;
+  std::vector<RimPoint> rims_;
+  std::uint32_t patches_ = 0;
+  Cloud probes_H_;
   PointBlocks occluders_H_;
+  Relief relief_;
   PlaneMap planes_;
   OccupancyGrid occupancy_;
 };

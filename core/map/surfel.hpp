@@ -1,6 +1,6 @@
 // A point of the map's fixed subset with what its surroundings look like.
 //
-// Frame H, metres. The normal's sign is arbitrary. Plain values.
+// Frame H, metres. The normal's sign is arbitrary unless the surfel is `backed`. Plain values.
 #pragma once
 
 #include <cstddef>
@@ -35,6 +35,12 @@ struct Surfel {
   SurfaceClass surface = SurfaceClass::other;
   /// The map is a plane all around the point: the normal can be trusted and no edge is near.
   bool planar = false;
+  /// It lies where cargo or hatch covers come and go: its absence says nothing.
+  bool movable = false;
+  /// Another surface lies close behind: it is seen from the side to which the normal points, or not at all.
+  bool backed = false;
+  static constexpr std::uint32_t kNoPatch = 0xFFFFFFFFU;
+  std::uint32_t patch = kNoPatch;  // number of the patch that it belongs to (patches.hpp)
 };
 
 }  // namespace hulltrack

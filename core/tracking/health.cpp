@@ -66,6 +66,8 @@ void check_integrity(const Evidence& e, Findings& findings) {
   if (e.integrity.faults != 0) {
     const bool contradicted = (e.integrity.faults & fault::contradicted) != 0;
     findings.add(contradicted ? State::lost : State::degraded, e.integrity.faults, e.integrity.reason);
+  } else if (e.integrity.undecided) {
+    findings.add(State::degraded, 0, e.integrity.reason);
   }
 }
 

@@ -89,6 +89,9 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   evidence.hold = inputs.hold;
   evidence.reacquire = inputs.reacquire;
   evidence.plc_faults = inputs.plc_faults;
+  if (inputs.reacquire) {
+    integrity.forget();
+  }
   // The pose is that of the middle of the scan, so the joints must answer there too.
   const JointHistory::Answer mid = joints.at(result.time);
   evidence.bracketed = mid.lookup == JointHistory::Lookup::ok &&
@@ -173,6 +176,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   if (config.registration.method == RegistrationMethod::automatic) {
     report.step = certainty_of(found, joints, result);
   }
+  integrity.weigh(*map, result.T_W_H, reference_H + result.displacement, report);
   if (report.step.solved) {
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
     result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);
@@ -187,7 +191,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
 
 /// The scan against the map at T_W_H.
 IntegrityReport HullTracker::Impl::inspect(const Pose& T_W_H) {
-  visibility.run(*map, map->subset_H(), T_W_H, views, scan_filter.sensors(), visible);
+  visibility.run(*map, map->probes_H(), T_W_H, views, scan_filter.sensors(), visible);
   return integrity.run(*map, visible, T_W_H, views, T_W_H * config.hull.reference_point);
 }
 
@@ -229,7 +233,9 @@ DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H, const KdTree& scan
     }
     const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
     for (const VisiblePoint& point : visible) {
-      add(candidates_H[point.index]);
+      if (point.index < candidates_H.size()) {  // behind the subset come the rims
+        add(candidates_H[point.index]);
+      }
     }
   }
   nearest.resize(measured_W.size());

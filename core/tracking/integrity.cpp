@@ -12,10 +12,14 @@ constexpr float kAround = 0.2F;   // m in the plane: half a subset voxel; return
 constexpr float kSameSurface = 0.06F;  // m: three sigma of a return beside the nearest one
 constexpr float kGrazing = 0.1F;       // sine of 6 deg: below it a range says little about the plane
 constexpr float kStepGate = 0.5F;      // m: observations farther off the plane belong to something else
+constexpr float kOnRim = 0.12F;        // m in the plane: what is surely coaming around a rim point
+constexpr float kAlongRim = 0.1F;      // m: half of the distance of rim points
+constexpr float kBelowRim = 0.15F;     // m below its top: down beside it, on its side at least
+constexpr float kRaised = 0.03F;       // m: a rim that may be covered
 // Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
 constexpr float kSharedError = 1.0F / 16.0F;
 
-/// Every ray that meets the plane within kBesides of the surfel.
+/// Every ray that meets the plane within kBesides of the surfel and was not stopped clearly before it.
 void collect_rays(const ScanView& view, const Point& p_L, const Point& n_L, std::vector<RayEnd>& rays) {
   rays.clear();
   const SphericalGrid::Cell centre = SphericalGrid::cell(p_L);
@@ -31,7 +35,11 @@ void collect_rays(const ScanView& view, const Point& p_L, const Point& n_L, std:
         const float t = plane / along;  // the plane is met at t * s
         const float besides2 = (t * s - p_L).squaredNorm();
         if (besides2 < kBesides * kBesides) {
-          rays.push_back({besides2, along - plane, (1.0F - t) * range});
+          const float depth = (1.0F - t) * range;
+          if (depth >=
+              -Integrity::kBehind) {  // else stopped before it, by a drop of rain say: it says nothing
+            rays.push_back({besides2, along - plane, depth});
+          }
         }
       }
     }
@@ -52,43 +60,177 @@ std::pair<double, double> mean_offset(const std::vector<RayEnd>& rays, const Ray
   return {sum / count, count / (1.0 + count * kSharedError)};
 }
 
+const RayEnd* nearest_ray(const std::vector<RayEnd>& rays) {
+  const auto nearest = std::min_element(
+      rays.begin(), rays.end(), [](const RayEnd& a, const RayEnd& b) { return a.besides2 < b.besides2; });
+  return nearest == rays.end() ? nullptr : &*nearest;
+}
+
 }  // namespace
 
 IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint> visible, const Pose& T_W_H,
                                std::span<const ScanView> views, const Eigen::Vector3d& reference_W) {
   IntegrityReport report;
   observations_.clear();
+  looks_.clear();
+  rim_rays_.clear();
+  const std::size_t surfels = map.surfels().size();
   for (const VisiblePoint& point : visible) {
-    const Surfel& surfel = map.surfels()[point.index];
-    if (!surfel.planar) {
-      continue;
-    }
-    const ScanView& view = views[point.lidar];
-    const Eigen::Vector3d n_W = T_W_H.linear() * surfel.normal_H.cast<double>();
-    const Point n_L = (view.T_W_L().linear().transpose() * n_W).cast<float>();
-    collect_rays(view, point.p_L, n_L, rays_);
-    const auto nearest = std::min_element(
-        rays_.begin(), rays_.end(), [](const RayEnd& a, const RayEnd& b) { return a.besides2 < b.besides2; });
-    if (nearest == rays_.end() || nearest->depth < -kBehind) {
-      continue;
-    }
-    const bool confirmed = std::abs(nearest->offset) <= kPlaneGate;
-    ++report.expected;
-    report.confirmed += confirmed ? 1 : 0;
-    report.seen_through += !confirmed && nearest->depth > kBehind ? 1 : 0;
-    if (surfel.surface != SurfaceClass::other) {
-      SurfaceCount& count = report.surfaces[static_cast<std::size_t>(surfel.surface)];
-      ++count.expected;
-      count.confirmed += confirmed ? 1 : 0;
-    }
-    if (std::abs(nearest->offset) <= kStepGate) {
-      const Eigen::Vector3d p_W = T_W_H * map.subset_H()[point.index].cast<double>();
-      const auto [offset, weight] = mean_offset(rays_, *nearest);
-      observations_.push_back({p_W, n_W, offset, weight});
+    if (point.index < surfels) {
+      look_at_surfel(map, point, T_W_H, views[point.lidar], report);
+    } else {
+      look_at_rim(map.rims()[point.index - surfels], point, T_W_H, views[point.lidar]);
     }
   }
   report.step = solve_plane_step(observations_, reference_W);
+  if (evidence_.patches() != map.patches()) {
+    evidence_.reset(map.patches());
+  }
+  evidence_.begin_frame();
+  if (judge_pose_integrity(report).faults == 0) {
+    collect_evidence(T_W_H, report.step, reference_W);
+  }
+  report.patches = evidence_.report();
   return report;
+}
+
+void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,
+                               const ScanView& view, IntegrityReport& report) {
+  const Surfel& surfel = map.surfels()[point.index];
+  if (!surfel.planar || surfel.movable) {
+    return;
+  }
+  const Eigen::Vector3d n_W = T_W_H.linear() * surfel.normal_H.cast<double>();
+  const Point n_L = (view.T_W_L().linear().transpose() * n_W).cast<float>();
+  if (surfel.backed && n_L.dot(point.p_L) > 0.0F) {
+    return;  // its other side, which lies behind another surface
+  }
+  collect_rays(view, point.p_L, n_L, rays_);
+  const RayEnd* nearest = nearest_ray(rays_);
+  if (nearest == nullptr) {
+    return;
+  }
+  const bool confirmed = std::abs(nearest->offset) <= kPlaneGate;
+  const bool through = !confirmed && nearest->depth > kBehind;
+  ++report.expected;
+  report.confirmed += confirmed ? 1 : 0;
+  report.seen_through += through ? 1 : 0;
+  if (surfel.surface != SurfaceClass::other) {
+    SurfaceCount& count = report.surfaces[static_cast<std::size_t>(surfel.surface)];
+    ++count.expected;
+    count.confirmed += confirmed ? 1 : 0;
+  }
+  if (std::abs(nearest->offset) <= kStepGate) {
+    const Eigen::Vector3d p_W = T_W_H * map.subset_H()[point.index].cast<double>();
+    const auto [offset, weight] = mean_offset(rays_, *nearest);
+    observations_.push_back({p_W, n_W, offset, weight});
+    if (surfel.patch != Surfel::kNoPatch) {
+      looks_.push_back({surfel.patch, observations_.back(), PatchLook::on});
+    }
+  } else if (surfel.patch != Surfel::kNoPatch && through) {
+    looks_.push_back({surfel.patch, {}, PatchLook::through});
+  }
+}
+
+void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H,
+                            const ScanView& view) {
+  if (rim.patch == Surfel::kNoPatch) {
+    return;
+  }
+  // Of so small a disc the height is known better than the slope: it is taken to be level.
+  const Eigen::Vector3d n_W = T_W_H.linear() * Eigen::Vector3d::UnitZ();
+  const Point n_L = (view.T_W_L().linear().transpose() * n_W).cast<float>();
+  look_across(rim, point.p_L, n_L, view.T_W_L().inverse() * T_W_H, view);
+  collect_rays(view, point.p_L, n_L, rays_);
+  const RayEnd* nearest = nearest_ray(rays_);
+  if (nearest == nullptr || nearest->besides2 > kOnRim * kOnRim) {
+    return;
+  }
+  const float offset = nearest->offset;
+  if (std::abs(offset) > kStepGate) {
+    if (nearest->depth > kBehind) {
+      looks_.push_back({rim.patch, {}, PatchLook::through});
+    }
+    return;
+  }
+  const Eigen::Vector3d p_W = T_W_H * rim.p_H.cast<double>();
+  looks_.push_back({rim.patch, {p_W, n_W, static_cast<double>(offset), 1.0}, PatchLook::on});
+  if (offset < kRaised) {
+    return;
+  }
+  const Eigen::Vector3d over_hold_W = T_W_H * rim.over_hold_H.cast<double>();
+  const Point beside_L = (view.T_W_L().inverse() * over_hold_W).cast<float>() + offset * n_L;
+  collect_rays(view, beside_L, n_L, rays_);
+  if (const RayEnd* beside = nearest_ray(rays_); beside != nullptr) {
+    const bool goes_on = std::abs(beside->offset) < kSameSurface;
+    looks_.push_back({rim.patch, {}, goes_on ? PatchLook::goes_on : PatchLook::ends});
+  }
+}
+
+void Integrity::look_across(const RimPoint& rim, const Point& p_L, const Point& n_L, const Pose& T_L_H,
+                            const ScanView& view) {
+  if (!(rim.begin < rim.end)) {
+    return;
+  }
+  const Point across_L = T_L_H.linear().cast<float>() * rim.across_H;
+  const Point along_L = n_L.cross(across_L);
+  const float plane = n_L.dot(p_L);
+  const SphericalGrid::Cell centre = SphericalGrid::cell(p_L);
+  for (int dr = -1; dr <= 1; ++dr) {
+    for (int dc = -1; dc <= 1; ++dc) {
+      for (const Point& ray : view.returns(centre.moved(dr, dc))) {
+        const float down = n_L.dot(ray);
+        const float range = ray.norm();
+        if (std::abs(down) < kGrazing * range) {
+          continue;
+        }
+        const float offset = down - plane;
+        const bool through = offset < 0.0F && std::abs(offset) > kBelowRim;
+        const Point from_middle = (through ? plane / down : 1.0F) * ray - p_L;
+        if (std::abs(along_L.dot(from_middle)) < kAlongRim && (through || offset < kBelowRim)) {
+          rim_rays_.push_back({&rim, across_L.dot(from_middle), offset, through});
+        }
+      }
+    }
+  }
+}
+
+/// The looks of a frame whose pose is right but for `step`, which is taken off.
+void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
+                                 const Eigen::Vector3d& reference_W) {
+  const auto moved = [&](const Eigen::Vector3d& p_W) -> Eigen::Vector3d {
+    return step.translation + step.rotation.cross(p_W - reference_W);
+  };
+  const RimPoint* last = nullptr;
+  float lift = 0.0F;
+  float aside = 0.0F;
+  for (const RimRay& ray : rim_rays_) {
+    if (ray.rim != last) {
+      last = ray.rim;
+      const Eigen::Vector3d moved_H = T_W_H.linear().transpose() * moved(T_W_H * ray.rim->p_H.cast<double>());
+      lift = static_cast<float>(moved_H.z());
+      aside = ray.rim->across_H.dot(moved_H.cast<float>());
+    }
+    if (ray.through || std::abs(ray.offset - lift) < kSameSurface) {
+      evidence_.add_across(*ray.rim, ray.s - aside, !ray.through);
+    }
+  }
+  for (const PatchLook& look : looks_) {
+    switch (look.kind) {
+      case PatchLook::on: {
+        evidence_.add_offset(look.patch, look.seen.offset - look.seen.n_W.dot(moved(look.seen.p_W)),
+                             look.seen.weight);
+        break;
+      }
+      case PatchLook::through:
+        evidence_.add_through(look.patch);
+        break;
+      case PatchLook::goes_on:
+      case PatchLook::ends:
+        evidence_.add_beside(look.patch, look.kind == PatchLook::goes_on);
+        break;
+    }
+  }
 }
 
 }  // namespace hulltrack

@@ -21,6 +21,7 @@
 #include "core/base/status.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/map/hull_map.hpp"
+#include "core/tracking/patch_evidence.hpp"
 #include "core/tracking/scan_view.hpp"
 #include "core/tracking/visibility.hpp"
 
@@ -63,11 +64,14 @@ struct IntegrityReport {
   std::uint32_t confirmed = 0;
   std::uint32_t seen_through = 0;  // part of the contradicted
   PlaneStep step;
+  PatchReport patches;
 };
 
 struct IntegrityFinding {
-  Faults faults = 0;   // contradicted, unconstrained
-  std::string reason;  // with figures; empty without a fault
+  Faults faults = 0;        // contradicted, unconstrained
+  std::string reason;       // with figures; empty without a fault
+  bool other_ship = false;  // the pose is right as far as one can tell, the ship is not
+  bool undecided = false;   // too early to say whether it is the ship of the map
 };
 
 /// Robust (Geman-McClure) Gauss-Newton over fixed observations, linearised about their centroid; the answer
@@ -78,19 +82,51 @@ struct IntegrityFinding {
 /// What the figures mean for health; the limits and where they come from stand in the source.
 [[nodiscard]] IntegrityFinding judge_integrity(const IntegrityReport& report);
 
+/// The same without the patches: may they be judged at this pose?
+[[nodiscard]] IntegrityFinding judge_pose_integrity(const IntegrityReport& report);
+
 class Integrity {
  public:
   static constexpr float kPlaneGate = 0.15F;  // m
   static constexpr float kBehind = 0.7F;      // m
 
-  /// `visible`: of map.subset_H(), at the pose T_W_H. `reference_W`: the hull's reference point at that pose.
+  /// `visible`: of map.probes_H(), at the pose T_W_H. `reference_W`: the hull's reference point at that pose.
+  /// The same map at every call, or forget() in between.
   [[nodiscard]] IntegrityReport run(const HullMap& map, std::span<const VisiblePoint> visible,
                                     const Pose& T_W_H, std::span<const ScanView> views,
                                     const Eigen::Vector3d& reference_W);
 
+  /// Another ship may lie there from now on.
+  void forget() { evidence_.reset(0); }
+
+  [[nodiscard]] const PatchEvidence& evidence() const { return evidence_; }
+
  private:
+  /// What one probe says about its patch, before the pose's remaining error is taken off.
+  struct PatchLook {
+    std::uint32_t patch;
+    SurfelObservation seen;  // not when it was seen through
+    enum Kind : std::uint8_t { on, through, goes_on, ends } kind;
+  };
+  /// A ray that meets the top of a coaming or the air beside it.
+  struct RimRay {
+    const RimPoint* rim;
+    float s;  // across the strip, m: of the return if it is on the top, else of where the plane is met
+    float offset;
+    bool through;
+  };
+  void look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
+                      IntegrityReport& report);
+  void look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
+  void look_across(const RimPoint& rim, const Point& p_L, const Point& n_L, const Pose& T_L_H,
+                   const ScanView& view);
+  void collect_evidence(const Pose& T_W_H, const PlaneStep& step, const Eigen::Vector3d& reference_W);
+
   std::vector<SurfelObservation> observations_;
   std::vector<RayEnd> rays_;
+  std::vector<PatchLook> looks_;
+  std::vector<RimRay> rim_rays_;
+  PatchEvidence evidence_;
 };
 
 }  // namespace hulltrack

@@ -29,6 +29,11 @@ constexpr double kMostSeenThrough = 0.05;
 // Fewer confirmed surfels (16 m^2) are no ground for any statement.
 constexpr std::uint32_t kFewestConfirmed = 100;
 
+// One thing that was moved on deck shows three faces at most. Coamings are not moved: two pieces of them are
+// enough, since one may have something lying on it.
+constexpr std::uint32_t kFewestDisplaced = 4;
+constexpr std::uint32_t kFewestDisplacedRims = 2;
+
 bool is_finite(const PlaneStep& step) {
   return step.translation.allFinite() && step.rotation.allFinite() &&
          step.covariance_translation.allFinite() && step.covariance_rotation.allFinite();
@@ -84,7 +89,7 @@ IntegrityFinding judge_surfaces(const IntegrityReport& report) {
 
 }  // namespace
 
-IntegrityFinding judge_integrity(const IntegrityReport& report) {
+IntegrityFinding judge_pose_integrity(const IntegrityReport& report) {
   IntegrityFinding surfaces = judge_surfaces(report);
   IntegrityFinding step =
       report.confirmed < kFewestConfirmed
@@ -97,6 +102,26 @@ IntegrityFinding judge_integrity(const IntegrityReport& report) {
     surfaces.reason = std::move(step.reason);
   }
   return surfaces;
+}
+
+IntegrityFinding judge_integrity(const IntegrityReport& report) {
+  IntegrityFinding finding = judge_pose_integrity(report);
+  if (finding.faults != 0) {
+    return finding;
+  }
+  const PatchReport& patches = report.patches;
+  if (patches.displaced >= kFewestDisplaced || patches.displaced_rims >= kFewestDisplacedRims) {
+    finding.faults = fault::contradicted;
+    finding.other_ship = true;
+    finding.reason =
+        format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere, by %.2f m",
+                    patches.displaced, patches.solid, patches.median_offset);
+  } else if (!patches.decided) {
+    finding.undecided = true;
+    finding.reason = format_text("is it the map's ship? %u of %u surfaces in view are judged", patches.judged,
+                                 patches.in_view);
+  }
+  return finding;
 }
 
 }  // namespace hulltrack

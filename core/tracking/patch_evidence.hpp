@@ -1,0 +1,94 @@
+// Is this the ship of the map? What the scans of the last seconds say about each of its patches.
+//
+// For each patch of the map (core/map/patches.hpp) a histogram of how far along its normal the rays really
+// ended, once the pose's own remaining error is taken off. From it:
+//   in place    coherent and within kDisplaced of its plane
+//   displaced   coherent and farther off: a surface like the mapped one stands elsewhere - another ship
+//   gone        most rays go clearly through: a cover that moved, a fitting that was removed
+//   scattered   no one surface: cargo against a wall, things on deck, dust
+//   covered     a rim that is higher and goes on over the hold: a cover lies on it
+// Only displaced ones speak against the ship. Hull frame, metres. State: kBins + 2 floats a patch, forgotten
+// as new returns of the same patch come in (kMemory), all of it by reset(). Thread rule: one owner. Cost: a
+// few ns an observation, 50 ns a patch in view.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "core/map/patches.hpp"
+#include "core/tracking/strip_evidence.hpp"
+
+namespace hulltrack {
+
+enum class PatchState : std::uint8_t { unknown, in_place, displaced, gone, scattered, covered };
+
+struct PatchFinding {
+  PatchState state = PatchState::unknown;
+  double offset = 0.0;     // m, median
+  double coherence = 0.0;  // share of the returns within kCoherent of it
+  double returns = 0.0;    // that it stands on
+};
+
+/// Over the patches that have been judged.
+struct PatchReport {
+  std::uint32_t in_view = 0;    // seen in this frame
+  std::uint32_t judged = 0;     // of those in view: not unknown
+  std::uint32_t solid = 0;      // in place or displaced, seen in this frame or remembered
+  std::uint32_t displaced = 0;  // part of the solid
+  std::uint32_t displaced_rims = 0;  // part of the displaced
+  double median_offset = 0.0;   // of the displaced ones, absolute, m
+  bool decided = false;         // since reset() enough of what was in view has been judged
+};
+
+class PatchEvidence {
+ public:
+  static constexpr double kReach = 0.5;  // m: farther off a plane is another surface
+
+  /// Forgets everything; `patches` of the map.
+  void reset(std::uint32_t patches);
+  [[nodiscard]] std::uint32_t patches() const { return static_cast<std::uint32_t>(patches_.size()); }
+
+  void begin_frame() { ++frame_; }
+  /// `returns` independent ones that lie `offset` (m, |offset| <= kReach) along the patch's normal.
+  void add_offset(std::uint32_t patch, double offset, double returns);
+  /// A ray that went through.
+  void add_through(std::uint32_t patch);
+  /// Whether the surface goes on, as high as it was found here, over the hold beside it.
+  void add_beside(std::uint32_t patch, bool goes_on);
+
+  /// A ray on the top of a rim, or through the air beside it, at `s` across (m).
+  void add_across(const RimPoint& rim, float s, bool on);
+
+  [[nodiscard]] PatchFinding judge(std::uint32_t patch) const;
+  [[nodiscard]] StripEvidence::Finding judge_strip(std::uint32_t patch) const;
+  [[nodiscard]] PatchReport report();
+
+ private:
+  static constexpr int kBins = 40;
+  struct Patch {
+    std::array<float, kBins> offsets{};
+    float through = 0.0F;
+    float goes_on = 0.0F;
+    float ends = 0.0F;
+    std::uint32_t last_frame = 0;
+  };
+  struct Strip {
+    StripEvidence evidence;
+    float begin = 0.0F;  // as mapped, m
+    float end = 0.0F;
+    std::uint32_t last_frame = 0;
+  };
+  Patch& touch(std::uint32_t patch);
+
+  std::vector<Patch> patches_;
+  std::unordered_map<std::uint32_t, Strip> strips_;  // of the patches that are rims
+  std::vector<PatchState> states_;  // as of the last frame that saw the patch
+  std::vector<float> found_;        // offsets likewise, m
+  std::uint32_t frame_ = 0;
+  std::uint32_t frames_ = 0;  // that showed patches
+  bool decided_ = false;
+};
+
+}  // namespace hulltrack
