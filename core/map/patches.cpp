@@ -15,7 +15,7 @@ namespace {
 constexpr float kRimReach = 1.0F;  // m: a coaming with its rest bar is not broader
 constexpr float kBelowRim = 0.5F;  // m: sheer along a hatch; the deck is farther below
 // A coaming's top is 0.3 m broad or more: of points 0.1 m apart one row at least has a disc of this radius.
-constexpr float kRimVoxel = 0.1F;   // m
+constexpr float kRimVoxel = 0.1F;    // m
 constexpr float kRimRadius = 0.12F;  // m
 constexpr std::size_t kRimNeighbours = 160;
 constexpr std::size_t kFewestRimNeighbours = 8;
@@ -25,9 +25,9 @@ constexpr double kRimOffCentre = 0.035;  // m; a half disc's centroid is 0.05 m 
 constexpr double kRimLevel = 0.95;       // cosine of 18 deg: heel, sheer, noise of so small a disc
 constexpr float kRimSpacing = 0.2F;      // m between rim points
 
-constexpr float kCorner = 2.0F;  // tangent of the angle from which on a direction to the hold is a side's
-constexpr float kOffLine = 0.06F;       // m: the middle row of a strip is known to half of kRimVoxel
-constexpr float kRimAside = 0.4F;       // m: as far as the edges of a rim are looked for
+constexpr float kCorner = 2.0F;    // tangent of the angle from which on a direction to the hold is a side's
+constexpr float kOffLine = 0.06F;  // m: the middle row of a strip is known to half of kRimVoxel
+constexpr float kRimAside = 0.4F;  // m: as far as the edges of a rim are looked for
 constexpr float kRimThickness = 0.04F;  // m: of the layer of points that are its top
 
 constexpr float kConnected = 0.65F;      // m: neighbours in a 0.4 m subset
@@ -63,8 +63,8 @@ std::array<int, 3> tile_of(const Point& p) {
   return {tile(p.x()), tile(p.y()), tile(p.z())};
 }
 
-/// For each point the number of its patch, counted on from `next`; kNoPatch where it has too few. Neighbours of
-/// one tile are of one patch if belong(i, j).
+/// For each point the number of its patch, counted on from `next`; kNoPatch where it has too few. Neighbours
+/// of one tile are of one patch if belong(i, j).
 template <typename Belong>
 std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std::uint32_t& next,
                                    Belong&& belong) {
@@ -185,7 +185,8 @@ void measure_strip(const Cloud& cloud, const KdTree& map, std::vector<RimPoint*>
       const float s = rim->across_H.dot(d);
       const float along = Point::UnitZ().cross(rim->across_H).dot(d);
       const int bin = static_cast<int>(std::floor((s + kRimAside) / kBin));
-      if (std::abs(d.z()) < kRimThickness && std::abs(along) < 0.5F * kRimSpacing && bin >= 0 && bin < kBins) {
+      if (std::abs(d.z()) < kRimThickness && std::abs(along) < 0.5F * kRimSpacing && bin >= 0 &&
+          bin < kBins) {
         profile[static_cast<std::size_t>(bin)] += 1.0F;
       }
     }
@@ -207,7 +208,8 @@ void measure_strip(const Cloud& cloud, const KdTree& map, std::vector<RimPoint*>
   int high = kMiddle;
   while (low > 0 && smooth(low) > 0.5F * plateau) --low;
   while (high < kBins - 1 && smooth(high) > 0.5F * plateau) ++high;
-  const bool sharp = smooth(low - kEdge) < kMostBeyond * plateau && smooth(high + kEdge) < kMostBeyond * plateau;
+  const bool sharp =
+      smooth(low - kEdge) < kMostBeyond * plateau && smooth(high + kEdge) < kMostBeyond * plateau;
   if (low == 0 || high == kBins - 1 || !sharp) {
     return;  // broader than a rim, or something joins it
   }
@@ -236,8 +238,8 @@ void give_patches_one_side(std::vector<Surfel>& surfels, std::uint32_t patches) 
   for (Surfel& surfel : surfels) {
     if (surfel.patch != Surfel::kNoPatch) {
       const Vote& vote = votes[surfel.patch];
-      const float sign = std::copysign(1.0F, vote.direction.dot(surfel.normal_H)) *
-                         (vote.side < 0.0F ? -1.0F : 1.0F);
+      const float sign =
+          std::copysign(1.0F, vote.direction.dot(surfel.normal_H)) * (vote.side < 0.0F ? -1.0F : 1.0F);
       surfel.normal_H *= sign;
       surfel.backed = std::abs(vote.side) > 0.5F * vote.surfels;
     }

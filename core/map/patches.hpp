@@ -20,8 +20,8 @@ namespace hulltrack {
 /// A point in the middle of a coaming's top, which is a strip.
 struct RimPoint {
   Point p_H;
-  Point over_hold_H;  // at the same height, where the open hold is
-  Point across_H;     // level unit vector across the strip towards the hold
+  Point over_hold_H;   // at the same height, where the open hold is
+  Point across_H;      // level unit vector across the strip towards the hold
   float begin = 0.0F;  // edges of the strip from p_H along across_H, m; both 0: not known
   float end = 0.0F;
   std::uint32_t patch = Surfel::kNoPatch;
@@ -36,8 +36,8 @@ inline constexpr float kTile = 4.0F;  // m
 /// compute_surfels().
 void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel>& surfels);
 
-/// Gives planar surfels and rim points the number of their patch, and the surfels of a patch one side; returns
-/// how many patches there are.
+/// Gives planar surfels and rim points the number of their patch, and the surfels of a patch one side;
+/// returns how many patches there are.
 std::uint32_t number_patches(const Cloud& points_H, std::vector<Surfel>& surfels, std::vector<RimPoint>& rims,
                              const Relief& relief);
 

@@ -12,7 +12,7 @@ constexpr float kAround = 0.2F;   // m in the plane: half a subset voxel; return
 constexpr float kSameSurface = 0.06F;  // m: three sigma of a return beside the nearest one
 constexpr float kGrazing = 0.1F;       // sine of 6 deg: below it a range says little about the plane
 constexpr float kStepGate = 0.5F;      // m: observations farther off the plane belong to something else
-constexpr float kOnRim = 0.12F;        // m in the plane: what is surely coaming around a rim point
+constexpr float kOnRim = 0.1F;         // m across: what is surely coaming around a rim point
 constexpr float kAlongRim = 0.1F;      // m: half of the distance of rim points
 constexpr float kBelowRim = 0.15F;     // m below its top: down beside it, on its side at least
 constexpr float kRaised = 0.03F;       // m: a rim that may be covered
@@ -58,6 +58,37 @@ std::pair<double, double> mean_offset(const std::vector<RayEnd>& rays, const Ray
     }
   }
   return {sum / count, count / (1.0 + count * kSharedError)};
+}
+
+/// A rim point in L: upward, and across its strip.
+struct RimAxes {
+  Point p_L, n_L, across_L;
+
+  [[nodiscard]] float across(const Point& q_L) const { return across_L.dot(q_L - p_L); }
+  [[nodiscard]] bool is_beside_rim(const Point& q_L) const {
+    return std::abs(n_L.cross(across_L).dot(q_L - p_L)) < kAlongRim;
+  }
+  [[nodiscard]] bool is_on_rim(const Point& q_L) const {
+    return is_beside_rim(q_L) && std::abs(across(q_L)) < kOnRim;
+  }
+};
+
+/// Calls visit(return, where its ray meets the plane, return's height over it) for the rays around a rim
+/// point.
+template <typename Visit>
+void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
+  const float plane = axes.n_L.dot(axes.p_L);
+  const SphericalGrid::Cell centre = SphericalGrid::cell(axes.p_L);
+  for (int dr = -1; dr <= 1; ++dr) {
+    for (int dc = -1; dc <= 1; ++dc) {
+      for (const Point& ray : view.returns(centre.moved(dr, dc))) {
+        const float down = axes.n_L.dot(ray);
+        if (std::abs(down) > kGrazing * ray.norm()) {
+          visit(ray, Point(plane / down * ray), down - plane);
+        }
+      }
+    }
+  }
 }
 
 const RayEnd* nearest_ray(const std::vector<RayEnd>& rays) {
@@ -139,59 +170,36 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
   }
   // Of so small a disc the height is known better than the slope: it is taken to be level.
   const Eigen::Vector3d n_W = T_W_H.linear() * Eigen::Vector3d::UnitZ();
-  const Point n_L = (view.T_W_L().linear().transpose() * n_W).cast<float>();
-  look_across(rim, point.p_L, n_L, view.T_W_L().inverse() * T_W_H, view);
-  collect_rays(view, point.p_L, n_L, rays_);
-  const RayEnd* nearest = nearest_ray(rays_);
-  if (nearest == nullptr || nearest->besides2 > kOnRim * kOnRim) {
-    return;
-  }
-  const float offset = nearest->offset;
-  if (std::abs(offset) > kStepGate) {
-    if (nearest->depth > kBehind) {
+  const Eigen::Vector3d p_W = T_W_H * rim.p_H.cast<double>();
+  const Pose T_L_W = view.T_W_L().inverse();
+  const Point n_L = (T_L_W.linear() * n_W).cast<float>();
+  float raised = 0.0F;
+  const RimAxes axes{point.p_L, n_L, (T_L_W.linear() * T_W_H.linear()).cast<float>() * rim.across_H};
+  const auto on = [&](float offset) {
+    looks_.push_back({rim.patch, {p_W, n_W, static_cast<double>(offset), 1.0}, PatchLook::on});
+    raised = std::max(raised, offset);
+  };
+  look_across(view, axes, [&](const Point& returned, const Point& met, float offset) {
+    // Heights are asked where the returns are: the side of a cover that stands on the rim has all heights.
+    if (std::abs(offset) <= kStepGate && axes.is_on_rim(returned)) {
+      on(offset);
+    } else if (offset < -kStepGate && axes.is_on_rim(met)) {
       looks_.push_back({rim.patch, {}, PatchLook::through});
     }
-    return;
-  }
-  const Eigen::Vector3d p_W = T_W_H * rim.p_H.cast<double>();
-  looks_.push_back({rim.patch, {p_W, n_W, static_cast<double>(offset), 1.0}, PatchLook::on});
-  if (offset < kRaised) {
+    const bool through = offset < -kBelowRim;
+    const Point& where = through ? met : returned;
+    if (rim.begin < rim.end && offset < kBelowRim && axes.is_beside_rim(where)) {
+      rim_rays_.push_back({&rim, axes.across(where), offset, through});
+    }
+  });
+  if (raised < kRaised) {
     return;
   }
   const Eigen::Vector3d over_hold_W = T_W_H * rim.over_hold_H.cast<double>();
-  const Point beside_L = (view.T_W_L().inverse() * over_hold_W).cast<float>() + offset * n_L;
-  collect_rays(view, beside_L, n_L, rays_);
-  if (const RayEnd* beside = nearest_ray(rays_); beside != nullptr) {
+  collect_rays(view, (T_L_W * over_hold_W).cast<float>() + raised * n_L, n_L, rays_);
+  if (const RayEnd* beside = nearest_ray(rays_)) {
     const bool goes_on = std::abs(beside->offset) < kSameSurface;
     looks_.push_back({rim.patch, {}, goes_on ? PatchLook::goes_on : PatchLook::ends});
-  }
-}
-
-void Integrity::look_across(const RimPoint& rim, const Point& p_L, const Point& n_L, const Pose& T_L_H,
-                            const ScanView& view) {
-  if (!(rim.begin < rim.end)) {
-    return;
-  }
-  const Point across_L = T_L_H.linear().cast<float>() * rim.across_H;
-  const Point along_L = n_L.cross(across_L);
-  const float plane = n_L.dot(p_L);
-  const SphericalGrid::Cell centre = SphericalGrid::cell(p_L);
-  for (int dr = -1; dr <= 1; ++dr) {
-    for (int dc = -1; dc <= 1; ++dc) {
-      for (const Point& ray : view.returns(centre.moved(dr, dc))) {
-        const float down = n_L.dot(ray);
-        const float range = ray.norm();
-        if (std::abs(down) < kGrazing * range) {
-          continue;
-        }
-        const float offset = down - plane;
-        const bool through = offset < 0.0F && std::abs(offset) > kBelowRim;
-        const Point from_middle = (through ? plane / down : 1.0F) * ray - p_L;
-        if (std::abs(along_L.dot(from_middle)) < kAlongRim && (through || offset < kBelowRim)) {
-          rim_rays_.push_back({&rim, across_L.dot(from_middle), offset, through});
-        }
-      }
-    }
   }
 }
 

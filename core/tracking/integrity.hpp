@@ -118,8 +118,6 @@ class Integrity {
   void look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
                       IntegrityReport& report);
   void look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
-  void look_across(const RimPoint& rim, const Point& p_L, const Point& n_L, const Pose& T_L_H,
-                   const ScanView& view);
   void collect_evidence(const Pose& T_W_H, const PlaneStep& step, const Eigen::Vector3d& reference_W);
 
   std::vector<SurfelObservation> observations_;

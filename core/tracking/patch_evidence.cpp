@@ -12,8 +12,8 @@ constexpr float kMemory = 200.0F;
 constexpr double kFewest = 12.0;  // 1.25 * 3 cm / sqrt(12) = 1.1 cm of sigma: a third of kDisplaced
 // Noise of 1.1 cm (three sigma: 3.3 cm) or the bend that a pose does not take out (a parabola of L/1000 of a
 // ship of 120 m bends by 1 cm within 25 m) with the map's 0.5 cm.
-constexpr double kDisplaced = 0.045;  // m
-constexpr double kCoherent = 0.075;   // m: 2.5 sigma of a return
+constexpr double kDisplaced = 0.045;     // m
+constexpr double kCoherent = 0.075;      // m: 2.5 sigma of a return
 constexpr double kLeastCoherence = 0.8;  // one surface has 0.99; a fifth may meet its edges or things on it
 constexpr double kMostThrough = 0.4;
 constexpr double kMostGoesOn = 0.25;

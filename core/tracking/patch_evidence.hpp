@@ -33,13 +33,13 @@ struct PatchFinding {
 
 /// Over the patches that have been judged.
 struct PatchReport {
-  std::uint32_t in_view = 0;    // seen in this frame
-  std::uint32_t judged = 0;     // of those in view: not unknown
-  std::uint32_t solid = 0;      // in place or displaced, seen in this frame or remembered
-  std::uint32_t displaced = 0;  // part of the solid
+  std::uint32_t in_view = 0;         // seen in this frame
+  std::uint32_t judged = 0;          // of those in view: not unknown
+  std::uint32_t solid = 0;           // in place or displaced, seen in this frame or remembered
+  std::uint32_t displaced = 0;       // part of the solid
   std::uint32_t displaced_rims = 0;  // part of the displaced
-  double median_offset = 0.0;   // of the displaced ones, absolute, m
-  bool decided = false;         // since reset() enough of what was in view has been judged
+  double median_offset = 0.0;        // of the displaced ones, absolute, m
+  bool decided = false;              // since reset() enough of what was in view has been judged
 };
 
 class PatchEvidence {
@@ -84,8 +84,8 @@ class PatchEvidence {
 
   std::vector<Patch> patches_;
   std::unordered_map<std::uint32_t, Strip> strips_;  // of the patches that are rims
-  std::vector<PatchState> states_;  // as of the last frame that saw the patch
-  std::vector<float> found_;        // offsets likewise, m
+  std::vector<PatchState> states_;                   // as of the last frame that saw the patch
+  std::vector<float> found_;                         // offsets likewise, m
   std::uint32_t frame_ = 0;
   std::uint32_t frames_ = 0;  // that showed patches
   bool decided_ = false;

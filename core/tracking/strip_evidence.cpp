@@ -10,12 +10,13 @@ namespace {
 
 constexpr float kMemory = 400.0F;  // rays: 0.1 of them lie within 3 cm of an edge, enough to place it to 1 cm
 constexpr float kFewest = 25.0F;   // rays of either kind
-// An edge is drawn by a beam 3 to 5 cm wide, its mean is good to 1 cm; the pose's own error is taken off to 2 cm
-// where the surfaces that hold it are the hatches' own; the map's edges are known to half of its 5 cm voxel.
-constexpr double kDisplaced = 0.06;         // m
-constexpr double kFewestExplained = 25.0;   // rays: five sigma of a count of 25 that ought to be none
-constexpr double kLeastExplained = 0.7;     // of those against: the strip is whole where it is said to be
-constexpr float kFarthest = 0.35F;  // m: farther aside another strip may be meant
+// An edge is drawn by a beam 3 to 5 cm wide, its mean is good to 1 cm; the pose's own error is taken off to 2
+// cm where the surfaces that hold it are the hatches' own; the map's edges are known to half of its 5 cm
+// voxel.
+constexpr double kDisplaced = 0.06;        // m
+constexpr double kFewestExplained = 25.0;  // rays: five sigma of a count of 25 that ought to be none
+constexpr double kLeastExplained = 0.7;    // of those against: the strip is whole where it is said to be
+constexpr float kFarthest = 0.35F;         // m: farther aside another strip may be meant
 
 }  // namespace
 

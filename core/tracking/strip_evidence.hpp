@@ -1,10 +1,11 @@
 // Does a coaming's top lie where the map has it, across its length? By its two edges.
 //
-// Rays that meet the plane of a strip near it end on it or go down beside it: two histograms across the strip,
-// of those that ended on it and of those that went through. The strip's shift is the one that leaves the
-// fewest rays contradicting: through inside of it, on it outside. A cover or cargo at its height contradicts on
-// one side only and moves nothing. Hull frame, metres across the strip towards the hold. State: 2 kBins floats
-// a strip, forgotten as new rays come in (kMemory). Thread rule: one owner. Cost: 0.1 us a strip in view.
+// Rays that meet the plane of a strip near it end on it or go down beside it: two histograms across the
+// strip, of those that ended on it and of those that went through. The strip's shift is the one that leaves
+// the fewest rays contradicting: through inside of it, on it outside. A cover or cargo at its height
+// contradicts on one side only and moves nothing. Hull frame, metres across the strip towards the hold.
+// State: 2 kBins floats a strip, forgotten as new rays come in (kMemory). Thread rule: one owner. Cost: 0.1
+// us a strip in view.
 #pragma once
 
 #include <array>
@@ -18,8 +19,8 @@ class StripEvidence {
 
   struct Finding {
     bool known = false;
-    double shift = 0.0;     // m
-    double against = 0.0;   // rays that contradict the strip as it is mapped
+    double shift = 0.0;      // m
+    double against = 0.0;    // rays that contradict the strip as it is mapped
     double explained = 0.0;  // of those, what the shift explains
     [[nodiscard]] bool displaced() const;
   };
