@@ -22,7 +22,7 @@ void ScanView::rebuild(std::span<const Point> returns_W, const Pose& T_W_L) {
     cell_of_[at] = seen.cell[i];
   });
   sort_by_cell();
-  find_nearest();
+  find_fronts();
 }
 
 void ScanView::sort_by_cell() {
@@ -45,26 +45,29 @@ void ScanView::note_field_of_view(SphericalGrid::Cell cell) {
   columns_seen_.set(static_cast<std::size_t>(cell.column));
 }
 
-void ScanView::find_nearest() {
-  nearest_.assign(SphericalGrid::kCells, kNothing);
-  nearest_around_.assign(SphericalGrid::kCells, kNothing);
+void ScanView::find_fronts() {
+  front_.assign(SphericalGrid::kCells, kNothing);
+  front_around_.assign(SphericalGrid::kCells, kNothing);
   for (int row = 0; row < SphericalGrid::kRows; ++row) {
     for (int column = 0; column < SphericalGrid::kColumns; ++column) {
       const SphericalGrid::Cell cell{row, column};
-      float nearest2 = kNothing;
-      for (const Point& p : returns(cell)) {
-        nearest2 = std::min(nearest2, p.squaredNorm());
-      }
-      if (nearest2 == kNothing) {
+      const std::span<const Point> here = returns(cell);
+      if (here.empty()) {
         continue;
       }
       note_field_of_view(cell);
-      const float nearest = std::sqrt(nearest2);
-      nearest_[cell.index()] = nearest;
+      ranges2_.clear();
+      for (const Point& p : here) {
+        ranges2_.push_back(p.squaredNorm());
+      }
+      const auto middle = ranges2_.begin() + static_cast<std::ptrdiff_t>(ranges2_.size() / 2);
+      std::nth_element(ranges2_.begin(), middle, ranges2_.end());
+      const float front = std::sqrt(*middle);
+      front_[cell.index()] = front;
       for (int dr = -1; dr <= 1; ++dr) {
         for (int dc = -1; dc <= 1; ++dc) {
-          float& around = nearest_around_[cell.moved(dr, dc).index()];
-          around = std::min(around, nearest);
+          float& around = front_around_[cell.moved(dr, dc).index()];
+          around = std::min(around, front);
         }
       }
     }
