@@ -66,8 +66,6 @@ void check_integrity(const Evidence& e, Findings& findings) {
   if (e.integrity.faults != 0) {
     const bool contradicted = (e.integrity.faults & fault::contradicted) != 0;
     findings.add(contradicted ? State::lost : State::degraded, e.integrity.faults, e.integrity.reason);
-  } else if (e.integrity.undecided) {
-    findings.add(State::degraded, 0, e.integrity.reason);
   }
 }
 
@@ -170,6 +168,9 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   }
 
   memory.good_frames = findings.state == State::tracking ? memory.good_frames + 1 : 0;
+  if (e.registered && e.integrity.undecided) {
+    findings.add(State::degraded, 0, e.integrity.reason);
+  }
   check_uniqueness(memory, e.search, findings);
   if (findings.state == State::tracking && memory.state != State::tracking &&
       memory.good_frames < limits.health.recover_frames) {

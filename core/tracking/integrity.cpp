@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace hulltrack {
@@ -15,6 +17,7 @@ constexpr float kStepGate = 0.5F;      // m: observations farther off the plane 
 constexpr float kOnRim = 0.1F;         // m across: what is surely coaming around a rim point
 constexpr float kAlongRim = 0.1F;      // m: half of the distance of rim points
 constexpr float kBelowRim = 0.15F;     // m below its top: down beside it, on its side at least
+constexpr double kBlurred = 0.015;     // m, 1 sigma: three of them are a displaced patch
 constexpr float kRaised = 0.03F;       // m: a rim that may be covered
 // Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
 constexpr float kSharedError = 1.0F / 16.0F;
@@ -114,15 +117,40 @@ IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint>
     }
   }
   report.step = solve_plane_step(observations_, reference_W);
+  return report;
+}
+
+void Integrity::weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
+                      IntegrityReport& report) {
   if (evidence_.patches() != map.patches()) {
     evidence_.reset(map.patches());
   }
   evidence_.begin_frame();
-  if (judge_pose_integrity(report).faults == 0) {
+  if (report.step.solved && (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
     collect_evidence(T_W_H, report.step, reference_W);
   }
   report.patches = evidence_.report();
-  return report;
+  static FILE* f = getenv("DBG") ? fopen(getenv("DBG"), "w") : nullptr;  // TEMPORARY
+  if (f) {
+    static unsigned frame = 0;
+    ++frame;
+    if (frame % 5 == 0)
+      for (std::uint32_t i = 0; i < map.patches(); ++i) {
+        auto x = evidence_.judge_strip(i);
+        if (x.known) std::fprintf(f, "S %u %u %.4f %.1f %.1f\n", frame, i, x.shift, x.against, x.explained);
+      }
+    std::fprintf(f, "F %u fault %d view %u judged %u solid %u rims %u displaced %u\n", frame,
+                 judge_pose_integrity(report).faults, report.patches.in_view, report.patches.judged,
+                 report.patches.solid, report.patches.displaced_rims, report.patches.displaced);
+    if (frame % 5 == 0)
+      for (std::uint32_t i = 0; i < map.patches(); ++i) {
+        const auto x = evidence_.judge(i);
+        if (x.returns > 0)
+          std::fprintf(f, "P %u %u %d %.4f %.2f %.0f\n", frame, i, int(x.state), x.offset, x.coherence,
+                       x.returns);
+      }
+    std::fflush(f);
+  }
 }
 
 void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,
@@ -209,7 +237,12 @@ void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
   const auto moved = [&](const Eigen::Vector3d& p_W) -> Eigen::Vector3d {
     return step.translation + step.rotation.cross(p_W - reference_W);
   };
+  // A direction that the pose's own uncertainty blurs says nothing about the ship.
+  const auto sharp = [&](const Eigen::Vector3d& n_W) {
+    return n_W.dot(step.covariance_translation * n_W) < kBlurred * kBlurred;
+  };
   const RimPoint* last = nullptr;
+  bool used = false;
   float lift = 0.0F;
   float aside = 0.0F;
   for (const RimRay& ray : rim_rays_) {
@@ -218,6 +251,10 @@ void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
       const Eigen::Vector3d moved_H = T_W_H.linear().transpose() * moved(T_W_H * ray.rim->p_H.cast<double>());
       lift = static_cast<float>(moved_H.z());
       aside = ray.rim->across_H.dot(moved_H.cast<float>());
+      used = sharp(T_W_H.linear() * ray.rim->across_H.cast<double>());
+    }
+    if (!used) {
+      continue;
     }
     if (ray.through || std::abs(ray.offset - lift) < kSameSurface) {
       evidence_.add_across(*ray.rim, ray.s - aside, !ray.through);
@@ -225,11 +262,13 @@ void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
   }
   for (const PatchLook& look : looks_) {
     switch (look.kind) {
-      case PatchLook::on: {
+      case PatchLook::on:
+        if (!sharp(look.seen.n_W)) {
+          break;
+        }
         evidence_.add_offset(look.patch, look.seen.offset - look.seen.n_W.dot(moved(look.seen.p_W)),
                              look.seen.weight);
         break;
-      }
       case PatchLook::through:
         evidence_.add_through(look.patch);
         break;

@@ -91,10 +91,14 @@ class Integrity {
   static constexpr float kBehind = 0.7F;      // m
 
   /// `visible`: of map.probes_H(), at the pose T_W_H. `reference_W`: the hull's reference point at that pose.
-  /// The same map at every call, or forget() in between.
   [[nodiscard]] IntegrityReport run(const HullMap& map, std::span<const VisiblePoint> visible,
                                     const Pose& T_W_H, std::span<const ScanView> views,
                                     const Eigen::Vector3d& reference_W);
+
+  /// What the scan of the last run() says about the ship, at its pose but for report.step; fills
+  /// report.patches. Once a frame, for the frame's own pose.
+  void weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
+             IntegrityReport& report);
 
   /// Another ship may lie there from now on.
   void forget() { evidence_.reset(0); }

@@ -29,10 +29,9 @@ constexpr double kMostSeenThrough = 0.05;
 // Fewer confirmed surfels (16 m^2) are no ground for any statement.
 constexpr std::uint32_t kFewestConfirmed = 100;
 
-// One thing that was moved on deck shows three faces at most. Coamings are not moved: two pieces of them are
-// enough, since one may have something lying on it.
+// One thing that was moved on deck shows three faces at most. A coaming is not moved: a piece of one counts
+// twice, and two are enough, since one may have something lying on it.
 constexpr std::uint32_t kFewestDisplaced = 4;
-constexpr std::uint32_t kFewestDisplacedRims = 2;
 
 bool is_finite(const PlaneStep& step) {
   return step.translation.allFinite() && step.rotation.allFinite() &&
@@ -110,7 +109,7 @@ IntegrityFinding judge_integrity(const IntegrityReport& report) {
     return finding;
   }
   const PatchReport& patches = report.patches;
-  if (patches.displaced >= kFewestDisplaced || patches.displaced_rims >= kFewestDisplacedRims) {
+  if (patches.displaced + patches.displaced_rims >= kFewestDisplaced) {
     finding.faults = fault::contradicted;
     finding.other_ship = true;
     finding.reason =

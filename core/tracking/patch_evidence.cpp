@@ -20,7 +20,7 @@ constexpr double kMostGoesOn = 0.25;
 
 // A statement about the ship needs most of what is in view, and a second look at what was seen by chance:
 // what a frame of 16 lines leaves out the loader's motion and the noise show in the next ones.
-constexpr std::uint32_t kFramesToDecide = 5;
+constexpr std::uint32_t kFramesToDecide = 9;
 constexpr std::uint32_t kFewestToDecide = 8;
 constexpr double kShareToDecide = 0.75;
 
@@ -28,8 +28,7 @@ constexpr double kShareToDecide = 0.75;
 
 void PatchEvidence::reset(std::uint32_t patches) {
   patches_.assign(patches, {});
-  states_.assign(patches, PatchState::unknown);
-  found_.assign(patches, 0.0F);
+  verdicts_.assign(patches, {});
   strips_.clear();
   frame_ = 0;
   frames_ = 0;
@@ -122,24 +121,41 @@ PatchFinding PatchEvidence::judge(std::uint32_t patch) const {
   return finding;
 }
 
+void PatchEvidence::judge_again(std::uint32_t patch) {
+  Verdict& verdict = verdicts_[patch];
+  const PatchFinding plane = judge(patch);
+  const StripEvidence::Finding strip = judge_strip(patch);
+  verdict.state = plane.state;
+  if (plane.state == PatchState::displaced) {
+    verdict.off_plane = true;
+    verdict.by = static_cast<float>(std::abs(plane.offset));
+  } else if (plane.state != PatchState::unknown && plane.state != PatchState::scattered) {
+    verdict.off_plane = false;
+  }
+  if (strip.displaced()) {
+    verdict.aside = true;
+    verdict.by = static_cast<float>(std::abs(strip.shift));
+  } else if (strip.in_place()) {
+    verdict.aside = false;
+  }
+}
+
 PatchReport PatchEvidence::report() {
   PatchReport report;
   std::vector<float> displaced;
   for (std::uint32_t i = 0; i < patches(); ++i) {
+    const Verdict& verdict = verdicts_[i];
     if (patches_[i].last_frame == frame_) {
-      const PatchFinding finding = judge(i);
-      const StripEvidence::Finding strip = judge_strip(i);
-      const bool aside = finding.state != PatchState::displaced && strip.displaced();
-      states_[i] = aside ? PatchState::displaced : finding.state;
-      found_[i] = static_cast<float>(std::abs(aside ? strip.shift : finding.offset));
+      judge_again(i);
       ++report.in_view;
-      report.judged += finding.state == PatchState::unknown ? 0 : 1;
+      report.judged += verdict.state == PatchState::unknown ? 0 : 1;
     }
-    if (states_[i] == PatchState::displaced) {
-      displaced.push_back(found_[i]);
+    const bool elsewhere = verdict.off_plane || verdict.aside;
+    if (elsewhere) {
+      displaced.push_back(verdict.by);
       report.displaced_rims += strips_.contains(i) ? 1 : 0;
     }
-    report.solid += states_[i] == PatchState::in_place || states_[i] == PatchState::displaced ? 1 : 0;
+    report.solid += elsewhere || verdict.state == PatchState::in_place ? 1 : 0;
   }
   frames_ += report.in_view > 0 ? 1 : 0;
   decided_ = decided_ || (frames_ >= kFramesToDecide && report.judged >= kFewestToDecide &&

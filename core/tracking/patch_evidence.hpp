@@ -84,8 +84,15 @@ class PatchEvidence {
 
   std::vector<Patch> patches_;
   std::unordered_map<std::uint32_t, Strip> strips_;  // of the patches that are rims
-  std::vector<PatchState> states_;                   // as of the last frame that saw the patch
-  std::vector<float> found_;                         // offsets likewise, m
+  struct Verdict {
+    PatchState state = PatchState::unknown;  // as of the last frame that saw the patch
+    bool off_plane = false;                  // displaced, until it is seen in place, gone or covered
+    bool aside = false;                      // a rim across its length, until it is seen in place
+    float by = 0.0F;                         // m
+  };
+  void judge_again(std::uint32_t patch);
+
+  std::vector<Verdict> verdicts_;
   std::uint32_t frame_ = 0;
   std::uint32_t frames_ = 0;  // that showed patches
   bool decided_ = false;

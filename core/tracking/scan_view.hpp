@@ -2,11 +2,11 @@
 //
 // Frame L of the LiDAR at the middle of the scan, metres; cells of SphericalGrid. It answers three
 // questions: which returns lie near a direction, does something hide what lies there, and does the sensor
-// look there at all. What hides is what half of the returns of a cell show: a drop of rain before a deck is one
-// return of several, a chute is all of them. The field of view is learned: from the lowest to the highest row (its lasers may be more
-// than a cell apart) and every column in which this LiDAR has ever had a return; it only grows, so that a
-// sight that went empty (the ship left, packets were lost) still counts as looked at. Thread rule: one owner.
-// Cost: one pass over the returns, no allocation in steady state.
+// look there at all. What hides is what half of the returns of a cell show: a drop of rain before a deck is
+// one return of several, a chute is all of them. The field of view is learned: from the lowest to the highest
+// row (its lasers may be more than a cell apart) and every column in which this LiDAR has ever had a return;
+// it only grows, so that a sight that went empty (the ship left, packets were lost) still counts as looked
+// at. Thread rule: one owner. Cost: one pass over the returns, no allocation in steady state.
 #pragma once
 
 #include <bitset>
@@ -37,9 +37,9 @@ class ScanView {
            columns_seen_[static_cast<std::size_t>(cell.column)];
   }
 
-  /// True if a point at `range` in this cell is behind most of what the scan saw: by kBehind in the cell itself,
-  /// or by kFarBehind in a neighbouring one (beams are sparser than cells; a chute is nearer by metres, while a
-  /// deck seen at a low angle changes its range by decimetres from cell to cell).
+  /// True if a point at `range` in this cell is behind most of what the scan saw: by kBehind in the cell
+  /// itself, or by kFarBehind in a neighbouring one (beams are sparser than cells; a chute is nearer by
+  /// metres, while a deck seen at a low angle changes its range by decimetres from cell to cell).
   [[nodiscard]] bool hidden(SphericalGrid::Cell cell, float range) const {
     return front_[cell.index()] < range - kBehind || front_around_[cell.index()] < range - kFarBehind;
   }
@@ -55,11 +55,11 @@ class ScanView {
   Pose T_W_L_ = Pose::Identity();
   std::vector<Point> unsorted_L_;
   std::vector<std::uint32_t> cell_of_;
-  std::vector<Point> points_L_;        // by cell
-  std::vector<std::uint32_t> first_;   // kCells + 1 offsets into points_L_
-  std::vector<float> front_;         // per cell: median range of its returns, m; infinity without a return
-  std::vector<float> front_around_;  // the least of a cell and its eight neighbours
-  std::vector<float> ranges2_;       // of one cell, squared
+  std::vector<Point> points_L_;       // by cell
+  std::vector<std::uint32_t> first_;  // kCells + 1 offsets into points_L_
+  std::vector<float> front_;          // per cell: median range of its returns, m; infinity without a return
+  std::vector<float> front_around_;   // the least of a cell and its eight neighbours
+  std::vector<float> ranges2_;        // of one cell, squared
   int lowest_row_ = SphericalGrid::kRows;
   int highest_row_ = -1;
   std::bitset<SphericalGrid::kColumns> columns_seen_;

@@ -25,6 +25,8 @@ bool StripEvidence::Finding::displaced() const {
          explained > kLeastExplained * against;
 }
 
+bool StripEvidence::Finding::in_place() const { return known && std::abs(shift) <= kDisplaced; }
+
 void StripEvidence::begin_frame() {
   const float total =
       std::accumulate(on_.begin(), on_.end(), 0.0F) + std::accumulate(through_.begin(), through_.end(), 0.0F);

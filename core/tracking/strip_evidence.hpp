@@ -23,6 +23,7 @@ class StripEvidence {
     double against = 0.0;    // rays that contradict the strip as it is mapped
     double explained = 0.0;  // of those, what the shift explains
     [[nodiscard]] bool displaced() const;
+    [[nodiscard]] bool in_place() const;
   };
 
   /// Before the rays of a new frame: forgets so that kMemory rays are left at most.
