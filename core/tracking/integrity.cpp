@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <utility>
 
 namespace hulltrack {
@@ -130,27 +128,6 @@ void Integrity::weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector
     collect_evidence(T_W_H, report.step, reference_W);
   }
   report.patches = evidence_.report();
-  static FILE* f = getenv("DBG") ? fopen(getenv("DBG"), "w") : nullptr;  // TEMPORARY
-  if (f) {
-    static unsigned frame = 0;
-    ++frame;
-    if (frame % 5 == 0)
-      for (std::uint32_t i = 0; i < map.patches(); ++i) {
-        auto x = evidence_.judge_strip(i);
-        if (x.known) std::fprintf(f, "S %u %u %.4f %.1f %.1f\n", frame, i, x.shift, x.against, x.explained);
-      }
-    std::fprintf(f, "F %u fault %d view %u judged %u solid %u rims %u displaced %u\n", frame,
-                 judge_pose_integrity(report).faults, report.patches.in_view, report.patches.judged,
-                 report.patches.solid, report.patches.displaced_rims, report.patches.displaced);
-    if (frame % 5 == 0)
-      for (std::uint32_t i = 0; i < map.patches(); ++i) {
-        const auto x = evidence_.judge(i);
-        if (x.returns > 0)
-          std::fprintf(f, "P %u %u %d %.4f %.2f %.0f\n", frame, i, int(x.state), x.offset, x.coherence,
-                       x.returns);
-      }
-    std::fflush(f);
-  }
 }
 
 void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,

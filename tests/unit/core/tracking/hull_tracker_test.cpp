@@ -42,7 +42,7 @@ class Track {
   }
   TrackResult settle(const Pose& T_W_H) {
     TrackResult result;
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 10; ++i) {
       result = step(&ship_, {.T_W_H = T_W_H});
     }
     return result;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <ostream>
+#include <tuple>
 
 #include "core/tracking/integrity.hpp"
 
@@ -15,7 +16,7 @@ using ::testing::HasSubstr;
 
 Eigen::Matrix3d variance(double sigma) { return sigma * sigma * Eigen::Matrix3d::Identity(); }
 
-/// A right pose, well seen: 95 % of each class confirmed, 1 cm and 0.03 deg sure, nothing to correct.
+/// A right pose, well seen: 95 % of each class confirmed, 1 cm and 0.02 deg sure, nothing to correct.
 IntegrityReport right_pose() {
   IntegrityReport report;
   report.surfaces.fill({400, 380});
@@ -24,7 +25,11 @@ IntegrityReport right_pose() {
   report.seen_through = 12;
   report.step.solved = true;
   report.step.covariance_translation = variance(0.01);
-  report.step.covariance_rotation = variance(radians(0.03));
+  report.step.covariance_rotation = variance(radians(0.02));
+  report.patches.in_view = 40;
+  report.patches.judged = 38;
+  report.patches.solid = 38;
+  report.patches.decided = true;
   return report;
 }
 
@@ -178,6 +183,29 @@ TEST(JudgeIntegrityOfNan, FiguresThatAreNoNumbersAreNeverHealthy) {
     spoil[i](report);
     EXPECT_NE(judge_integrity(report).faults, 0) << i;
   }
+}
+
+TEST(JudgeShip, FourDisplacedPatchesOrTwoPiecesOfCoamingAreAnotherShip) {
+  for (const auto& [displaced, rims, other] :
+       {std::tuple{0U, 0U, false}, {3U, 0U, false}, {1U, 1U, false}, {4U, 0U, true}, {2U, 2U, true}}) {
+    IntegrityReport report = right_pose();
+    report.patches.displaced = displaced;
+    report.patches.displaced_rims = rims;
+    report.patches.median_offset = 0.12;
+    const IntegrityFinding finding = judge_integrity(report);
+    EXPECT_EQ(finding.other_ship, other) << displaced << " and " << rims;
+    EXPECT_EQ(finding.faults, other ? kContradicted : kNone);
+    EXPECT_EQ(finding.reason.find("another ship") != std::string::npos, other) << finding.reason;
+  }
+}
+
+TEST(JudgeShip, AShipThatIsNotDecidedOnIsNoFaultButSaidSo) {
+  IntegrityReport report = right_pose();
+  report.patches.decided = false;
+  const IntegrityFinding finding = judge_integrity(report);
+  EXPECT_TRUE(finding.undecided);
+  EXPECT_EQ(finding.faults, kNone);
+  EXPECT_FALSE(finding.reason.empty());
 }
 
 }  // namespace

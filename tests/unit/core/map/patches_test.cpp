@@ -1,0 +1,153 @@
+// A hatch written by hand: a deck with a hold in it, a coaming of 0.3 m breadth around, a locker beside it, covers
+// folded on one end.
+#include "core/map/patches.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "core/map/hull_map.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr float kSpacing = 0.05F;
+constexpr float kHalfLength = 8.0F;  // of the opening, x
+constexpr float kHalfWidth = 5.0F;
+constexpr float kBreadth = 0.3F;  // of the coaming
+constexpr float kTop = 1.4F;
+constexpr float kFloor = -7.0F;
+
+/// How far outside of the opening a level point lies; negative inside.
+float outside(float x, float y) {
+  return std::max(std::abs(x) - kHalfLength, std::abs(y) - kHalfWidth);
+}
+
+Cloud hatch() {
+  std::mt19937 random(5);
+  std::normal_distribution<float> noise(0.0F, 0.005F);
+  Cloud cloud;
+  const auto add = [&](float x, float y, float z) {
+    cloud.emplace_back(x + noise(random), y + noise(random), z + noise(random));
+  };
+  for (float x = -14.0F; x < 14.0F; x += kSpacing) {
+    for (float y = -9.0F; y < 9.0F; y += kSpacing) {
+      const float out = outside(x, y);
+      add(x, y, out < 0.0F ? kFloor : out < kBreadth ? kTop : 0.0F);
+    }
+  }
+  for (float z = kFloor; z < kTop; z += kSpacing) {
+    for (float y = -kHalfWidth; y < kHalfWidth; y += kSpacing) {
+      for (const float x : {-kHalfLength, kHalfLength}) {
+        add(x, y, z);
+        if (z > 0.0F) {
+          add(x + std::copysign(kBreadth, x), y, z);
+        }
+      }
+    }
+    for (float x = -kHalfLength; x < kHalfLength; x += kSpacing) {
+      for (const float y : {-kHalfWidth, kHalfWidth}) {
+        add(x, y, z);
+        if (z > 0.0F) {
+          add(x, y + std::copysign(kBreadth, y), z);
+        }
+      }
+    }
+  }
+  for (float y = -kHalfWidth; y < kHalfWidth; y += kSpacing) {  // a folded cover, on edge, forward
+    for (float z = kTop; z < kTop + 2.0F; z += kSpacing) {
+      add(kHalfLength + 1.0F, y, z);
+    }
+  }
+  return cloud;
+}
+
+class Hatch : public testing::Test {
+ protected:
+  static const HullMap& map() {
+    static const HullMap one(hatch());
+    return one;
+  }
+  static const Relief& relief() {
+    static const Relief one(map().cloud_H());
+    return one;
+  }
+};
+
+TEST_F(Hatch, TheHoldIsAPitAndTheDeckIsNot) {
+  EXPECT_TRUE(relief().in_pit({0.0F, 0.0F, kFloor}));
+  EXPECT_TRUE(relief().in_pit({4.0F, -3.0F, -2.0F})) << "cargo's place";
+  EXPECT_FALSE(relief().in_pit({0.0F, 0.0F, 0.5F})) << "less than 2 m below the rim";
+  EXPECT_FALSE(relief().in_pit({0.0F, 7.0F, 0.0F}));
+  EXPECT_FALSE(relief().in_pit({12.0F, 0.0F, 0.0F}));
+}
+
+TEST_F(Hatch, AboveTheRimIsTheCoversPlace) {
+  EXPECT_TRUE(relief().in_covers_place({kHalfLength + 1.0F, 0.0F, kTop + 1.0F}));
+  EXPECT_FALSE(relief().in_covers_place({kHalfLength + 0.15F, 0.0F, kTop}));
+  EXPECT_FALSE(relief().in_covers_place({0.0F, 7.0F, 0.0F}));
+  EXPECT_FALSE(relief().in_covers_place({0.0F, kHalfWidth + 3.5F, kTop + 1.0F})) << "too far aside";
+}
+
+TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoPatch) {
+  int movable = 0;
+  for (std::size_t i = 0; i < map().subset_H().size(); ++i) {
+    const Point& p = map().subset_H()[i];
+    const Surfel& surfel = map().surfels()[i];
+    const bool hold = outside(p.x(), p.y()) < 0.1F && p.z() < kTop - Relief::kDepth - 0.1F;
+    const bool cover = p.z() > kTop + 0.3F;
+    if (hold || cover) {
+      EXPECT_TRUE(surfel.movable) << p.transpose();
+      EXPECT_EQ(surfel.patch, Surfel::kNoPatch) << p.transpose();
+      ++movable;
+    } else if (p.z() > kTop - Relief::kDepth + 0.1F && p.z() < kTop + 0.1F) {
+      EXPECT_FALSE(surfel.movable) << p.transpose();
+    }
+  }
+  EXPECT_GT(movable, 500);
+}
+
+TEST_F(Hatch, RimsLieOnTheCoamingsMiddleAndKnowItsEdges) {
+  std::array<int, 4> sides{};
+  for (const RimPoint& rim : map().rims()) {
+    if (rim.patch == Surfel::kNoPatch) {
+      continue;
+    }
+    EXPECT_NEAR(outside(rim.p_H.x(), rim.p_H.y()), 0.5F * kBreadth, 0.04F) << rim.p_H.transpose();
+    EXPECT_NEAR(rim.p_H.z(), kTop, 0.01F);
+    const bool along_x = std::abs(rim.across_H.y()) > 0.9F;
+    const float to_hold = along_x ? rim.across_H.y() * rim.p_H.y() : rim.across_H.x() * rim.p_H.x();
+    EXPECT_LT(to_hold, 0.0F) << "across is towards the hold";
+    const bool measured = rim.begin < rim.end;
+    ASSERT_TRUE(measured) << rim.p_H.transpose();
+    const float middle = outside(rim.p_H.x(), rim.p_H.y());
+    EXPECT_NEAR(middle - rim.begin, kBreadth, kSpacing);
+    EXPECT_NEAR(middle - rim.end, 0.0F, kSpacing);
+    ++sides[along_x ? (rim.p_H.y() > 0.0F ? 0U : 1U) : (rim.p_H.x() > 0.0F ? 2U : 3U)];
+  }
+  for (const int points : sides) {
+    EXPECT_GT(points, 10);
+  }
+}
+
+TEST_F(Hatch, ACoamingsWallsAreSeenFromTheirOwnSideOnly) {
+  int walls = 0;
+  for (std::size_t i = 0; i < map().subset_H().size(); ++i) {
+    const Point& p = map().subset_H()[i];
+    const Surfel& surfel = map().surfels()[i];
+    const bool between = std::abs(p.y()) < kHalfWidth - 1.0F && p.z() > 0.4F && p.z() < kTop - 0.4F;
+    if (surfel.planar && between && surfel.surface == SurfaceClass::transverse) {
+      EXPECT_TRUE(surfel.backed);
+      const float outward = std::abs(p.x()) > kHalfLength + 0.5F * kBreadth ? 1.0F : -1.0F;
+      EXPECT_GT(outward * std::copysign(1.0F, p.x()) * surfel.normal_H.x(), 0.9F) << p.transpose();
+      ++walls;
+    }
+  }
+  EXPECT_GT(walls, 20);
+}
+
+}  // namespace
+}  // namespace hulltrack
