@@ -98,6 +98,11 @@ std::optional<double> AnalyticShip::cast(const Eigen::Vector3d& origin_H,
   return nearest < kFarthest ? std::optional(nearest) : std::nullopt;
 }
 
+const std::shared_ptr<const HullMap>& bulk_carrier_map() {
+  static const auto map = std::make_shared<const HullMap>(AnalyticShip::bulk_carrier().map(0.07, 1));
+  return map;
+}
+
 SensorConfig looking_down(const Eigen::Vector3d& position_W) {
   SensorConfig sensor;
   sensor.mount.linear() = rotation_from_rpy({0.0, radians(90.0), 0.0});

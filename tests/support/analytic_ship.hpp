@@ -14,6 +14,7 @@
 #include "core/geometry/scan.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/kinematics/joint_history.hpp"
+#include "core/map/hull_map.hpp"
 
 namespace hulltrack::testing {
 
@@ -49,6 +50,9 @@ class AnalyticShip {
 
   std::vector<Rectangle> rectangles_;
 };
+
+/// The map of bulk_carrier(), one point a square of 7 cm: built once a process.
+[[nodiscard]] const std::shared_ptr<const HullMap>& bulk_carrier_map();
 
 /// A LiDAR that looks down: x_L = -Z_W, 65 rows over +-45 deg, 344 columns over +-60 deg.
 [[nodiscard]] SensorConfig looking_down(const Eigen::Vector3d& position_W);
