@@ -1,0 +1,140 @@
+#include "core/map/occupancy_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <set>
+#include <tuple>
+#include <vector>
+
+namespace hulltrack {
+namespace {
+
+using Index = OccupancyGrid::Index;
+using Worth = std::array<std::uint16_t, OccupancyGrid::kHeights>;
+
+Cloud random_cloud(int count, const Point& half, std::mt19937& random) {
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  Cloud cloud;
+  for (int i = 0; i < count; ++i) {
+    cloud.push_back(half.cwiseProduct(Point(unit(random), unit(random), unit(random))));
+  }
+  return cloud;
+}
+
+/// What a cell is worth, by looking for it and its six neighbours.
+class Counted {
+ public:
+  Counted(const OccupancyGrid& grid, const Cloud& cloud) {
+    for (const Point& p : cloud) {
+      const Index i = grid.cell_of(p);
+      occupied_.insert({i.x, i.y, i.z});
+    }
+  }
+  [[nodiscard]] int worth(int x, int y, int z) const {
+    if (occupied_.contains({x, y, z})) {
+      return 2;
+    }
+    const bool beside = occupied_.contains({x - 1, y, z}) || occupied_.contains({x + 1, y, z}) ||
+                        occupied_.contains({x, y - 1, z}) || occupied_.contains({x, y + 1, z}) ||
+                        occupied_.contains({x, y, z - 1}) || occupied_.contains({x, y, z + 1});
+    return beside ? 1 : 0;
+  }
+
+ private:
+  std::set<std::tuple<int, int, int>> occupied_;
+};
+
+TEST(OccupancyGrid, CorrelationIsWhatCountingCellByCellGives) {
+  std::mt19937 random(1);
+  const Cloud map = random_cloud(400, {6.0F, 3.0F, 2.0F}, random);
+  const OccupancyGrid grid(map);
+  const Counted counted(grid, map);
+  std::vector<Index> cells;
+  // Inside, and far outside in every direction.
+  for (const Point& half : {Point(6.0F, 3.0F, 2.0F), Point(12.0F, 9.0F, 20.0F), Point(300.0F, 3.0F, 50.0F)}) {
+    for (const Point& p : random_cloud(100, half, random)) {
+      cells.push_back(grid.cell_of(p));
+    }
+  }
+  int most = 0;
+  for (int x = -14; x <= 14; x += 2) {
+    for (int y = -9; y <= 9; y += 3) {
+      Worth worth{};
+      grid.correlate(cells, x, y, worth);
+      for (int k = -OccupancyGrid::kUp; k <= OccupancyGrid::kUp; ++k) {
+        int sum = 0;
+        for (const Index& c : cells) {
+          sum += counted.worth(c.x + x, c.y + y, c.z + k);
+        }
+        ASSERT_EQ(worth[static_cast<std::size_t>(OccupancyGrid::kUp + k)], sum)
+            << x << ", " << y << ", " << k;
+        most = std::max(most, sum);
+      }
+    }
+  }
+  EXPECT_GT(most, 50) << "there was something to count";
+}
+
+TEST(OccupancyGrid, CorrelationIsAddedToWhatIsThere) {
+  std::mt19937 random(2);
+  const Cloud map = random_cloud(50, {2.0F, 2.0F, 2.0F}, random);
+  const OccupancyGrid grid(map);
+  const std::vector<Index> cells{grid.cell_of(map.front())};
+  Worth once{};
+  grid.correlate(cells, 0, 0, once);
+  Worth twice = once;
+  grid.correlate(cells, 0, 0, twice);
+  EXPECT_EQ(once[OccupancyGrid::kUp], 2);
+  for (std::size_t k = 0; k < once.size(); ++k) {
+    EXPECT_EQ(twice[k], 2 * once[k]);
+  }
+}
+
+TEST(OccupancyGrid, AShiftByWholeCellsIsOneOfTheirNumbers) {
+  std::mt19937 random(3);
+  const OccupancyGrid grid(random_cloud(50, {5.0F, 5.0F, 5.0F}, random));
+  // Cell middles, so that rounding does not decide.
+  const Index origin = grid.cell_of(Point::Zero());
+  std::uniform_int_distribution<int> number(-40, 40);
+  Point middle = Point::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = [&](float v) {
+      const Index i = grid.cell_of(v * Point::Unit(axis));
+      return axis == 0 ? i.x - origin.x : axis == 1 ? i.y - origin.y : i.z - origin.z;
+    };
+    float v = 0.0F;
+    while (at(v) == 0) {
+      v += 0.001F;
+    }
+    middle[axis] = v - OccupancyGrid::kCell / 2.0F;
+  }
+  for (int i = 0; i < 100; ++i) {
+    const Index d{number(random), number(random), number(random)};
+    const Index moved =
+        grid.cell_of(middle + OccupancyGrid::kCell * Point(static_cast<float>(d.x), static_cast<float>(d.y),
+                                                           static_cast<float>(d.z)));
+    EXPECT_EQ(moved.x - origin.x, d.x);
+    EXPECT_EQ(moved.y - origin.y, d.y);
+    EXPECT_EQ(moved.z - origin.z, d.z);
+  }
+}
+
+TEST(OccupancyGrid, PointsHoweverFarOutsideCountNothing) {
+  const OccupancyGrid grid(Cloud{Point::Zero()});
+  std::vector<Index> cells;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float far : {-1e30F, -1e4F, 1e4F, 1e30F}) {
+      cells.push_back(grid.cell_of(far * Point::Unit(axis)));
+    }
+  }
+  for (int x = -40; x <= 40; x += 20) {
+    Worth worth{};
+    grid.correlate(cells, x, 0, worth);
+    EXPECT_EQ(worth, Worth{});
+  }
+}
+
+}  // namespace
+}  // namespace hulltrack

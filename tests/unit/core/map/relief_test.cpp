@@ -1,0 +1,128 @@
+#include "core/map/relief.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hulltrack {
+namespace {
+
+constexpr float kRim = 1.4F;
+constexpr float kFloor = -6.0F;
+constexpr float kSpacing = 0.1F;
+
+void add_level(Cloud& cloud, float x0, float x1, float y0, float y1, float z) {
+  for (float x = x0 + kSpacing / 2; x < x1; x += kSpacing) {
+    for (float y = y0 + kSpacing / 2; y < y1; y += kSpacing) {
+      cloud.emplace_back(x, y, z);
+    }
+  }
+}
+
+/// The four walls of a rectangle, from z0 to z1.
+void add_walls(Cloud& cloud, float x0, float x1, float y0, float y1, float z0, float z1) {
+  for (float z = z0; z <= z1 + 1e-3F; z += kSpacing) {
+    for (float x = x0; x <= x1 + 1e-3F; x += kSpacing) {
+      cloud.emplace_back(x, y0, z);
+      cloud.emplace_back(x, y1, z);
+    }
+    for (float y = y0; y <= y1 + 1e-3F; y += kSpacing) {
+      cloud.emplace_back(x0, y, z);
+      cloud.emplace_back(x1, y, z);
+    }
+  }
+}
+
+/// A deck of 40 x 20 m at z = 0 with a bulwark of 1.2 m all around, an open hatch -8..8 x -5..5 with a
+/// coaming of 1.4 m above a floor at -6, and a house of 8 m. `floor` false: the hold was too dark for the
+/// survey.
+Cloud ship(bool floor = true) {
+  Cloud cloud;
+  add_level(cloud, -20.0F, -8.0F, -10.0F, 10.0F, 0.0F);
+  add_level(cloud, 8.0F, 20.0F, -10.0F, 10.0F, 0.0F);
+  add_level(cloud, -8.0F, 8.0F, -10.0F, -5.0F, 0.0F);
+  add_level(cloud, -8.0F, 8.0F, 5.0F, 10.0F, 0.0F);
+  add_walls(cloud, -20.0F, 20.0F, -10.0F, 10.0F, 0.0F, 1.2F);
+  add_walls(cloud, -8.0F, 8.0F, -5.0F, 5.0F, floor ? kFloor : 0.0F, kRim);
+  if (floor) {
+    add_level(cloud, -8.0F, 8.0F, -5.0F, 5.0F, kFloor);
+  }
+  add_walls(cloud, -19.0F, -15.0F, -8.0F, 8.0F, 0.0F, 8.0F);
+  add_level(cloud, -19.0F, -15.0F, -8.0F, 8.0F, 8.0F);
+  return cloud;
+}
+
+TEST(Relief, AHoldIsAPitAndItsRimIsTheCoaming) {
+  const Relief relief(ship());
+  for (float x = -7.0F; x <= 7.0F; x += 0.7F) {
+    for (float y = -4.0F; y <= 4.0F; y += 0.7F) {
+      EXPECT_TRUE(relief.in_pit({x, y, kFloor})) << x << ", " << y;
+      EXPECT_TRUE(relief.in_pit({x, y, kRim - 2.1F})) << "cargo that is 2.1 m below the rim";
+      EXPECT_FALSE(relief.in_pit({x, y, kRim - 1.9F})) << "cargo that is 1.9 m below it";
+      EXPECT_NEAR(relief.rim_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
+    }
+  }
+}
+
+TEST(Relief, ADeckBetweenBulwarkCoamingAndHouseIsNoPit) {
+  const Relief relief(ship());
+  for (float x = -14.0F; x <= 19.0F; x += 0.7F) {
+    for (const float y : {-9.0F, -7.0F, -5.7F, 5.7F, 7.0F, 9.0F}) {
+      EXPECT_FALSE(relief.in_pit({x, y, 0.0F})) << x << ", " << y;
+      EXPECT_TRUE(std::isnan(relief.rim_around({x, y, 0.0F}))) << x << ", " << y;
+    }
+  }
+  for (const float y : {-7.0F, 0.0F, 7.0F}) {
+    EXPECT_FALSE(relief.in_pit({-13.0F, y, 0.0F})) << "between house and hatch";
+  }
+}
+
+TEST(Relief, CoversStandAboveTheRimWithinTheirReachOfTheHatch) {
+  const Relief relief(ship());
+  EXPECT_TRUE(relief.in_covers_place({0.0F, 0.0F, 1.8F})) << "over the hatch";
+  EXPECT_TRUE(relief.in_covers_place({9.5F, 0.0F, 3.0F})) << "beside it";
+  EXPECT_FALSE(relief.in_covers_place({9.5F, 0.0F, 1.3F})) << "lower than the rim";
+  EXPECT_FALSE(relief.in_covers_place({0.0F, 4.9F, kRim})) << "the rim itself";
+  EXPECT_FALSE(relief.in_covers_place({12.0F, 0.0F, 3.0F})) << "farther than covers stand";
+  EXPECT_FALSE(relief.in_covers_place({-15.5F, 0.0F, 8.0F})) << "the house";
+}
+
+TEST(Relief, AHoldThatNoSurveySawIsNone) {
+  const Relief relief(ship(false));
+  EXPECT_TRUE(std::isnan(relief.rim_around({0.0F, 0.0F, 0.0F})));
+}
+
+TEST(Relief, TheShadowBesideAPitIsPit) {
+  Cloud cloud = ship();
+  std::erase_if(cloud, [](const Point& p) {  // the floor below one side is hidden by the coaming
+    return p.z() < -1.0F && p.y() > 3.0F;
+  });
+  const Relief relief(cloud);
+  for (const float x : {-5.0F, 0.0F, 5.0F}) {
+    EXPECT_NEAR(relief.rim_around({x, 4.0F, kFloor}), kRim, 1e-3F) << x;
+  }
+}
+
+TEST(Relief, PointOverThePitIsTheNearestCellInsideOfItsRim) {
+  const Relief relief(ship());
+  const auto over = relief.over_pit_near({0.0F, 5.8F, kRim}, 2.0F);
+  ASSERT_TRUE(over);
+  EXPECT_NEAR(over->x(), 0.0F, Relief::kCell);
+  EXPECT_LT(over->y(), 5.0F - Relief::kCell / 2) << "inside";
+  EXPECT_GT(over->y(), 5.0F - 3.0F * Relief::kCell) << "near";
+  EXPECT_EQ(over->z(), kRim);
+  EXPECT_FALSE(relief.over_pit_near({0.0F, 5.8F, kRim}, 0.5F)) << "out of reach";
+  EXPECT_FALSE(relief.over_pit_near({19.0F, 9.0F, kRim}, 2.0F)) << "no hatch there";
+}
+
+TEST(Relief, OutsideOfTheMapIsNothing) {
+  const Relief relief(ship());
+  for (const Point& p : {Point(30, 0, 0), Point(-30, 0, 0), Point(0, 30, 0), Point(0, -30, 0)}) {
+    EXPECT_FALSE(relief.in_pit(p));
+    EXPECT_FALSE(relief.in_covers_place(p));
+    EXPECT_TRUE(std::isnan(relief.rim_around(p)));
+  }
+}
+
+}  // namespace
+}  // namespace hulltrack
