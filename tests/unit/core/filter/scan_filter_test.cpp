@@ -31,7 +31,7 @@ JointHistory travelling() {
 
 FilteredScan run(const ScanFilter& filter, const Scan& scan, const JointHistory& joints) {
   FilteredScan out;
-  filter.run(scan, joints, out);
+  filter.run(scan, joints, {}, out);
   return out;
 }
 
@@ -149,15 +149,51 @@ TEST(ScanFilter, SegmentsOfNoLidarOrOutsideTheArrayAreLeftOutAndCounted) {
   EXPECT_EQ(out.segments_left_out, 4u);
 }
 
+TEST(ScanFilter, ReturnsOfAHullThatDriftsLieWhereTheyAreInTheMiddleOfTheScan) {
+  // A point of the hull turns about the vertical through `about` by w t and moves on by v t, t from the
+  // middle.
+  HullDrift drift;
+  drift.about_W = {10, 5, 0};
+  drift.velocity = {0.4, -0.2, 0.1};
+  drift.turning = {0, 0, radians(2.0)};
+  const Eigen::Vector3d at_middle(20, -3, 2);
+  Scan scan;
+  scan.begin = at_ms(0);
+  scan.end = at_ms(100);
+  Cloud expected;
+  for (const int ms : {0, 20, 50, 90, 100}) {
+    const double t = 0.001 * (ms - 50);
+    const double c = std::cos(radians(2.0) * t);
+    const double s = std::sin(radians(2.0) * t);
+    const Eigen::Vector3d d = at_middle - drift.about_W;
+    const Eigen::Vector3d seen = drift.about_W +
+                                 Eigen::Vector3d(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z()) +
+                                 t * drift.velocity;
+    const Eigen::Vector3f p = seen.cast<float>();
+    add_segment(scan, ms, {point(p.x(), p.y(), p.z())});
+    expected.push_back(at_middle.cast<float>());
+  }
+  JointHistory at_rest;
+  at_rest.add({at_ms(0), {}});
+  at_rest.add({at_ms(100), {}});
+  FilteredScan out;
+  ScanFilter({}, {SensorConfig{}}, std::nullopt).run(scan, at_rest, drift, out);
+  // The turn is about where the point of the hull is, which has moved by 2 cm at most: 2 cm * 0.1 deg.
+  ASSERT_EQ(out.hull_W.size(), expected.size());
+  for (const Point& p : out.hull_W) {
+    EXPECT_LT((p - expected.front()).norm(), 1e-4F) << p.transpose();
+  }
+}
+
 TEST(ScanFilter, OutputOfTheScanBeforeIsReplaced) {
   Scan scan;
   add_segment(scan, 0, {point(5, 0, 0)});
   const ScanFilter filter({}, {SensorConfig{}}, std::nullopt);
   FilteredScan out;
-  filter.run(scan, JointHistory{}, out);
+  filter.run(scan, JointHistory{}, {}, out);
   EXPECT_EQ(out.segments_left_out, 1u);
-  filter.run(scan, travelling(), out);
-  filter.run(scan, travelling(), out);
+  filter.run(scan, travelling(), {}, out);
+  filter.run(scan, travelling(), {}, out);
   EXPECT_EQ(out.segments_left_out, 0u);
   EXPECT_EQ(out.returns_W[0].size(), 1u);
   EXPECT_EQ(out.hull_W.size(), 1u);

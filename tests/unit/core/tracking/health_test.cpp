@@ -73,15 +73,9 @@ const std::vector<Case>& cases() {
       {"Q1 between the limits", [](Evidence& e) { e.metrics.q1 = 0.121; }, State::degraded, fault::q1_high},
       {"Q1 above lost", [](Evidence& e) { e.metrics.q1 = 0.251; }, State::lost, fault::q1_high},
       {"no map in view", [](Evidence& e) { e.metrics.valid = false; }, State::lost, fault::q1_high},
-      {"contradicted",
-       [](Evidence& e) {
-         e.integrity = {fault::contradicted, "off"};
-       },
+      {"contradicted", [](Evidence& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; },
        State::lost, fault::contradicted},
-      {"unconstrained",
-       [](Evidence& e) {
-         e.integrity = {fault::unconstrained, "free"};
-       },
+      {"unconstrained", [](Evidence& e) { e.integrity = {.faults = fault::unconstrained, .reason = "free"}; },
        State::degraded, fault::unconstrained},
       {"outside the envelope", [](Evidence& e) { e.displacement.y() = 2.01; }, State::lost,
        fault::implausible},
@@ -143,64 +137,123 @@ TEST(Health, ABadFrameStartsRecoveryAgain) {
   }
 }
 
-TEST(Health, IsAcquiringUntilFirstHealthy) {
+TEST(Health, IsAcquiringUntilTheBerthIsSearchedWhateverElseIsWrong) {
   Machine machine;
+  const auto searching = [](Evidence& e) { e.search = {1, 13, std::nullopt}; };
   for (const Case& c : cases()) {
-    const State state = machine.step(c.change).state;
-    const State expected = c.state == State::fault || c.state == State::held ? c.state : State::acquiring;
-    EXPECT_EQ(state, expected) << c.what;
+    const HealthVerdict verdict = machine.step([&](Evidence& e) {
+      searching(e);
+      c.change(e);
+    });
+    const bool idle = c.state == State::fault || c.state == State::held;
+    EXPECT_EQ(verdict.state, idle ? c.state : State::acquiring) << c.what;
+    EXPECT_FALSE(verdict.reason.empty()) << c.what;
   }
-  Machine fresh;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(machine.step(searching).state, State::acquiring) << "good frames";
+  }
+  EXPECT_EQ(machine.step().state, State::tracking);
+}
+
+TEST(Health, ABerthThatIsSearchedAtOnceStillAsksForRecoverFrames) {
+  Machine machine;
   for (int i = 0; i < 4; ++i) {
-    EXPECT_EQ(fresh.step().state, State::acquiring);
+    EXPECT_NE(machine.step().state, State::tracking);
   }
-  EXPECT_EQ(fresh.step().state, State::tracking);
+  EXPECT_EQ(machine.step().state, State::tracking);
 }
 
-TEST(Health, ReacquireForgetsTheLastPose) {
-  const auto far_away = [](Evidence& e) { e.displacement.x() = 8.0; };
+TEST(Health, AJumpWhileUniqueTakesHealthUntilThePoseIsBackWhereItCameFrom) {
   Machine machine = tracking_machine();
-  EXPECT_EQ(machine.step(far_away).state, State::degraded) << "a jump";
-  const auto edge = [&](Evidence& e) {
-    far_away(e);
-    e.reacquire = true;
-  };
-  EXPECT_EQ(machine.step(edge).state, State::acquiring);
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(machine.step(far_away).state, State::acquiring);
+  for (int i = 0; i < 5; ++i) {
+    const HealthVerdict verdict = machine.step([](Evidence& e) { e.displacement.x() = 0.9; });
+    EXPECT_EQ(verdict.state, State::degraded);
+    EXPECT_EQ(verdict.faults, fault::implausible);
+    EXPECT_TRUE(machine.memory.unique);
   }
-  EXPECT_EQ(machine.step(far_away).state, State::tracking);
-}
-
-TEST(Health, HullThatWasElsewhereForLongIsAmbiguousUntilReacquired) {
-  const auto elsewhere = [](Evidence& e) { e.integrity = {fault::contradicted, "off"}; };
-  Machine brief = tracking_machine();
-  for (int i = 0; i < 190; ++i) {  // 19 s
-    EXPECT_EQ(brief.step(elsewhere).faults, fault::contradicted);
-  }
-  brief.run(5);
-  EXPECT_EQ(brief.memory.state, State::tracking);
-
-  Machine machine = tracking_machine();
-  for (int i = 0; i < 210; ++i) {  // 21 s
-    (void)machine.step(elsewhere);
-  }
-  for (int i = 0; i < 100; ++i) {
-    const HealthVerdict verdict = machine.step();
-    EXPECT_EQ(verdict.state, State::acquiring);
-    EXPECT_EQ(verdict.faults, fault::ambiguous);
-  }
-  (void)machine.step([](Evidence& e) { e.reacquire = true; });
-  machine.run(4);
+  machine.run(5);
   EXPECT_EQ(machine.memory.state, State::tracking);
 }
 
-TEST(Health, JumpMayGrowWithTheTimeSinceTheLastHealthyPose) {
+TEST(Health, ReacquireForgetsTheLastPoseAndStartsTheSearch) {
+  const auto far_away = [](Evidence& e) { e.displacement.x() = 8.0; };
+  Machine machine = tracking_machine();
+  EXPECT_EQ(machine.step(far_away).state, State::degraded) << "a jump";
+  const auto searching = [&](Evidence& e) {
+    far_away(e);
+    e.search = {4, 13, std::nullopt};
+  };
+  const HealthVerdict edge = machine.step([&](Evidence& e) {
+    searching(e);
+    e.reacquire = true;
+  });
+  EXPECT_EQ(edge.state, State::acquiring);
+  EXPECT_EQ(edge.faults, 0) << "no jump from a pose that is forgotten";
+  EXPECT_NE(edge.reason.find("4 of 13"), std::string::npos) << edge.reason;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(machine.step(searching).state, State::acquiring) << "the search goes on";
+  }
+  EXPECT_EQ(machine.step(far_away).state, State::tracking) << "it is complete, after many good frames";
+}
+
+/// As many frames out of sight as bring the way that a hull can move, 0.6 m/s, beyond kUnseen less noise.
+constexpr int kFramesOutOfSight = 16;
+
+TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
+  const auto elsewhere = [](Evidence& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; };
+  Machine brief = tracking_machine();
+  for (int i = 0; i < 13; ++i) {
+    EXPECT_EQ(brief.step(elsewhere).faults, fault::contradicted);
+  }
+  brief.run(5);
+  EXPECT_EQ(brief.memory.state, State::tracking) << "it cannot have gone far";
+
+  Machine machine = tracking_machine();
+  for (int i = 0; i < kFramesOutOfSight; ++i) {
+    (void)machine.step(elsewhere);
+  }
+  EXPECT_FALSE(machine.memory.unique);
+  for (int i = 0; i < 100; ++i) {
+    const HealthVerdict verdict = machine.step([](Evidence& e) { e.search = {7, 13, std::nullopt}; });
+    ASSERT_EQ(verdict.state, State::acquiring) << i;
+  }
+  EXPECT_EQ(machine.step().state, State::tracking) << "searched through, and no rival";
+}
+
+TEST(Health, ARivalKeepsHealthAwayAndSaysWhere) {
+  Machine machine = tracking_machine();
+  const auto rivalled = [](Evidence& e) { e.search = {13, 13, Eigen::Vector3d(23.0, 0.1, -0.2)}; };
+  EXPECT_EQ(machine.step(rivalled).state, State::tracking) << "while it is followed there are none";
+  (void)machine.step([&](Evidence& e) {
+    rivalled(e);
+    e.reacquire = true;
+  });
+  for (int i = 0; i < 100; ++i) {
+    const HealthVerdict verdict = machine.step(rivalled);
+    ASSERT_EQ(verdict.state, State::acquiring);
+    ASSERT_EQ(verdict.faults, fault::ambiguous);
+    EXPECT_NE(verdict.reason.find("23.0, 0.1, -0.2"), std::string::npos) << verdict.reason;
+  }
+  EXPECT_EQ(machine.step().state, State::tracking);
+}
+
+TEST(Health, WhileTheBerthIsSearchedABetterPlaceIsNoJump) {
+  Machine machine;
+  (void)machine.step([](Evidence& e) { e.search = {4, 13, std::nullopt}; });
+  const HealthVerdict verdict = machine.step([](Evidence& e) {
+    e.search = {8, 13, std::nullopt};
+    e.displacement.x() = 9.0;
+  });
+  EXPECT_EQ(verdict.faults, 0) << verdict.reason;
+  EXPECT_EQ(verdict.state, State::acquiring);
+}
+
+TEST(Health, JumpMayGrowWithTheTimeSinceTheLastPoseThatWasFollowed) {
   Machine machine = tracking_machine();
   for (int i = 0; i < 10; ++i) {
-    (void)machine.step([](Evidence& e) { e.metrics.q1 = 0.2; });
+    (void)machine.step([](Evidence& e) { e.metrics.q1 = 0.3; });
   }
-  const auto moved = [](Evidence& e) { e.displacement.x() = 0.3; };  // 1.1 s at 0.3 m/s and noise
+  const auto moved = [](Evidence& e) { e.displacement.x() = 0.3; };  // in 1.1 s
   EXPECT_EQ(machine.step(moved).faults & fault::implausible, 0);
 }
 
@@ -259,17 +312,18 @@ TEST(MotionRecord, SlopeOfALineIsItsSpeed) {
   MotionRecord record;
   for (int i = 0; i < 30; ++i) {
     const double t = 0.1 * i;
-    record.add(MeasurementTime{i * milliseconds(100)}, {0.2 * t, -0.1 * t, 5.0}, 0.3 - 0.01 * t);
+    record.add(MeasurementTime{i * milliseconds(100)}, {0.2 * t, -0.1 * t, 5.0},
+               {0.02 * t, -0.1 + 0.03 * t, 0.3 - 0.01 * t});
   }
   ASSERT_TRUE(record.motion());
   EXPECT_TRUE(record.motion()->velocity.isApprox(Eigen::Vector3d(0.2, -0.1, 0.0), 1e-9));
-  EXPECT_NEAR(record.motion()->yaw_rate, -0.01, 1e-9);
+  EXPECT_TRUE(record.motion()->rpy_rate.isApprox(Eigen::Vector3d(0.02, 0.03, -0.01), 1e-9));
 }
 
 TEST(MotionRecord, FewPositionsHaveNoSpeed) {
   MotionRecord record;
   for (int i = 0; i < 3; ++i) {
-    record.add(MeasurementTime{i * milliseconds(100)}, {1.0 * i, 0, 0}, 0.0);
+    record.add(MeasurementTime{i * milliseconds(100)}, {1.0 * i, 0, 0}, Eigen::Vector3d::Zero());
     EXPECT_FALSE(record.motion());
   }
 }
