@@ -10,11 +10,6 @@ namespace {
 using testing::AnalyticShip;
 using testing::ScanOptions;
 
-const std::shared_ptr<const HullMap>& shared_map() {
-  static const auto map = std::make_shared<const HullMap>(AnalyticShip::bulk_carrier().map(0.07, 1));
-  return map;
-}
-
 TrackerConfig tracker_config() {
   TrackerConfig config;
   config.hull.reference_point = {3.0, -6.0, 1.4};
@@ -31,10 +26,13 @@ Pose displaced(const Eigen::Vector3d& t, const Eigen::Vector3d& rpy_deg = Eigen:
   return pose_from_xyz_rpy_deg(t, rpy_deg);
 }
 
+/// Enough to search the berth (13 starts, 4 a frame), to judge what is in view and to recover (5).
+constexpr int kFramesToBelieve = 30;
+
 /// A tracker over the analytic ship, and what it says frame after frame.
 class Track {
  public:
-  Track() : tracker_(tracker_config(), {}, {sensor()}, shared_map()) {}
+  Track() : tracker_(tracker_config(), {}, {sensor()}, testing::bulk_carrier_map()) {}
 
   TrackResult step(const AnalyticShip* ship, ScanOptions options, const FrameInputs& inputs = {}) {
     options.frame = frame_++;
@@ -42,7 +40,11 @@ class Track {
   }
   TrackResult settle(const Pose& T_W_H) {
     TrackResult result;
+<<<<<<< HEAD
     for (int i = 0; i < 10; ++i) {
+=======
+    for (int i = 0; i < kFramesToBelieve && !result.health; ++i) {
+>>>>>>> d7c67da (tracking: tests of a tracker that finds a displaced hull again)
       result = step(&ship_, {.T_W_H = T_W_H});
     }
     return result;
@@ -91,21 +93,26 @@ TEST(HullTracker, TellsTheMotionOfAHealthyHullAlone) {
   EXPECT_FALSE(result.motion.rate) << "of half a second";
 }
 
-TEST(HullTracker, IsNeverHealthyOnAHullThatItDoesNotFind) {
-  // Shifts beyond what the gate of 0.3 m can follow: along, across, both, up, down, turned.
+double turn_error(const TrackResult& result, const Pose& T_W_H) {
+  return rotation_angle(result.T_W_H.linear().transpose() * T_W_H.linear());
+}
+
+TEST(HullTracker, FindsAHullThatLiesElsewhereAndIsNeverHealthyOffIt) {
   for (const auto& [t, yaw] :
        {std::pair{Eigen::Vector3d(1, 0, 0), 0.0}, std::pair{Eigen::Vector3d(-0.5, 0, 0), 0.0},
         std::pair{Eigen::Vector3d(5, 0, 0), 0.0}, std::pair{Eigen::Vector3d(0, 1.0, 0), 0.0},
-        std::pair{Eigen::Vector3d(0, -0.6, 0), 0.0}, std::pair{Eigen::Vector3d(1, 1, 0), 0.0},
-        std::pair{Eigen::Vector3d(0, 0, 1.5), 0.0}, std::pair{Eigen::Vector3d(0, 0, -2), 0.0},
-        std::pair{Eigen::Vector3d(0, 0, 0), 3.0}}) {
+        std::pair{Eigen::Vector3d(1, 1, 0), 0.0}, std::pair{Eigen::Vector3d(0, 0, 1.5), 0.0},
+        std::pair{Eigen::Vector3d(0, 0, -2), 0.0}, std::pair{Eigen::Vector3d(0, 0, 0), 1.0}}) {
     Track track;
     const Pose T_W_H = displaced(t, {0, 0, yaw});
-    for (int i = 0; i < 8; ++i) {
+    bool found = false;
+    for (int i = 0; i < kFramesToBelieve && !found; ++i) {
       const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
-      EXPECT_TRUE(!result.health || error(result, T_W_H) < 0.10)
+      found = result.health;
+      EXPECT_TRUE(!found || (error(result, T_W_H) < 0.05 && turn_error(result, T_W_H) < radians(0.1)))
           << t.transpose() << ", yaw " << yaw << ": error " << error(result, T_W_H);
     }
+    EXPECT_TRUE(found) << t.transpose() << ", yaw " << yaw;
   }
 }
 
@@ -163,7 +170,7 @@ TEST(HullTracker, EmptyScanIsAStateNotACrash) {
 TEST(HullTracker, ScanThatJointsDoNotBracketIsNotRegistered) {
   Track track;
   ASSERT_TRUE(track.settle(Pose::Identity()).health);
-  HullTracker tracker(tracker_config(), {}, {sensor()}, shared_map());
+  HullTracker tracker(tracker_config(), {}, {sensor()}, testing::bulk_carrier_map());
   ScanOptions options;
   options.frame = 10'000;
   const TrackResult result = tracker.process(testing::scan_ship(&track.ship(), sensor(), options),
