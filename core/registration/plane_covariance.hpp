@@ -22,7 +22,7 @@ struct PlaneCovariance {
   bool valid = false;              // false: too few patches, or a direction is free
   Matrix6 pose = Matrix6::Zero();  // as if all residuals were independent
   double shared = 1.0;             // mean ratio of what patches say to that, over the six directions; noisy
-  Twist by_bend = Twist::Zero();   // by how much a metre of bend moves the pose
+  Twist by_bend = Twist::Zero();   // minus what a metre of bend moves the pose by
   /// The bend from this fit alone: how far it is from the one that the residuals were taken with, m.
   double bend_off = 0.0;
   double bend_sigma = 0.0;  // m; 0 = the fit says nothing about the bend

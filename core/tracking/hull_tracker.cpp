@@ -106,7 +106,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     }
     search(evidence, result);
     if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
-      finder.learn_bend(result.time, found);
+      finder.learn(result.time, found);
     }
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
@@ -156,7 +156,8 @@ PlaneStep HullTracker::Impl::certainty_of(const PlaneIcpResult& found, const Joi
   if (step.solved) {
     const Eigen::Vector3d& reference_H = config.hull.reference_point;
     result.covariance =
-        covariance_at_reference(found.covariance.pose, found.icp.centre, reference_H, result.T_W_H.linear()) +
+        covariance_at_reference(finder.covariance(found.covariance), found.icp.centre, reference_H,
+                                result.T_W_H.linear()) +
         covariance_of_joints(scan_filter.machine(), joints, result.time, reference_H + result.displacement);
     step.covariance_translation = result.covariance.bottomRightCorner<3, 3>();
     step.covariance_rotation = result.covariance.topLeftCorner<3, 3>();

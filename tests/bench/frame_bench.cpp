@@ -145,7 +145,7 @@ void time_parts(const FrameRecording& recording, const HullMap& map, Figures& fi
   play(recording, [&](const Scan& scan, double) {
     Stopwatch watch;
     const auto done = [&](const char* part) { figures.parts[part].push_back(watch.lap()); };
-    filter.run(scan, recording.joints, filtered);
+    filter.run(scan, recording.joints, {}, filtered);
     done("deskew");
     voxels.filter(filtered.hull_W, thinned_W);
     done("voxels");

@@ -40,11 +40,7 @@ class Track {
   }
   TrackResult settle(const Pose& T_W_H) {
     TrackResult result;
-<<<<<<< HEAD
-    for (int i = 0; i < 10; ++i) {
-=======
     for (int i = 0; i < kFramesToBelieve && !result.health; ++i) {
->>>>>>> d7c67da (tracking: tests of a tracker that finds a displaced hull again)
       result = step(&ship_, {.T_W_H = T_W_H});
     }
     return result;

@@ -111,8 +111,8 @@ const Case kCases[] = {
      kUnconstrained, "to 0.042 m"},
     {"LessSureThanRotationAllows", [](R& r) { r.step.covariance_rotation = variance(radians(0.12)); },
      kUnconstrained, "0.120 deg"},
-    {"TooFewConfirmed", [](R& r) { r.confirmed = 99; }, kUnconstrained,
-     "only 99 map surfaces are confirmed by the scan, 100 are needed"},
+    {"TooFewConfirmed", [](R& r) { r.confirmed = 39; }, kUnconstrained,
+     "only 39 map surfaces are confirmed by the scan, 40 are needed"},
     {"NothingSeen", [](R& r) { r = IntegrityReport{}; }, kUnconstrained, "only 0 map surfaces"},
 
     // By the share of a class that is where the pose puts it.

@@ -64,7 +64,7 @@ struct Sight {
   std::vector<VisiblePoint> visible;
 
   void look(const AnalyticShip* scanned) {
-    filter.run(testing::scan_ship(scanned, sensor, {}), testing::joints_at_rest(1.0), filtered);
+    filter.run(testing::scan_ship(scanned, sensor, {}), testing::joints_at_rest(1.0), {}, filtered);
     views[0].rebuild(filtered.returns_W[0], sensor.mount);
     Visibility(25.0).run(map, map.subset_H(), Pose::Identity(), views, std::vector{sensor}, visible);
   }
