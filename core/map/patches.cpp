@@ -191,12 +191,12 @@ void measure_strip(const Cloud& cloud, const KdTree& map, std::vector<RimPoint*>
       }
     }
   }
-  // Smoothed over more than the map's voxel of 5 cm, then outward from the middle to where less than half of the middle's is left.
+  // Smoothed over three bins, then outward from the middle to where less than half of the middle's is left.
   const auto smooth = [&](int i) {
     const auto at = [&](int k) { return profile[static_cast<std::size_t>(std::clamp(k, 0, kBins - 1))]; };
-    return (at(i - 2) + at(i - 1) + at(i) + at(i + 1) + at(i + 2)) / 5.0F;
+    return (at(i - 1) + at(i) + at(i + 1)) / 3.0F;
   };
-  constexpr int kEdge = 5;              // bins: 6 cm, the smoothing
+  constexpr int kEdge = 4;              // bins: 5 cm, the map's voxel
   constexpr float kMostBeyond = 0.15F;  // of the plateau
   float plateau = 0.0F;
   constexpr int kMiddle = kBins / 2;

@@ -12,8 +12,8 @@ namespace {
 constexpr double kTranslationBudget = 0.05;
 const double kRotationBudget = radians(0.10);
 constexpr double kSigmas = 3.0;
-// When the uncertainty alone takes this share of the budget the geometry, not the pose, is to blame: four sigma
-// within all of it, so that not one healthy frame in ten thousand is beyond.
+// When the uncertainty alone takes this share of the budget the geometry, not the pose, is to blame: four
+// sigma within all of it, so that not one healthy frame in ten thousand is beyond.
 constexpr double kShareOfSigma = 0.75;
 
 // At a right pose a surfel is missed only where something was moved or noise is large: nine in ten and more

@@ -42,7 +42,7 @@ constexpr double kSharedGain = 0.1;
 // What all residuals of a scan share cannot be seen in them: a beam that falls at a slant, or on an edge, is
 // returned by its nearer part. A fortieth of a return's noise of 2 cm, and as much from one end of the view
 // to the other, 20 m away.
-constexpr double kCommonShift = 0.0005;                // m
+constexpr double kCommonShift = 0.0005;              // m
 constexpr double kCommonTurn = kCommonShift / 20.0;  // rad
 
 Pose hull_pose(const Eigen::Vector3d& reference_H, const Eigen::Vector3d& displacement,

@@ -65,17 +65,17 @@ using R = IntegrityReport;
 const Case kCases[] = {
     {"RightPose", [](R&) {}, kNone, ""},
 
-    // By the step: what it says and twice its sigma must stay within 10 cm and 0.3 deg.
+    // By the step: what it says and three times its sigma must stay within 5 cm and 0.1 deg.
     {"StepWithinTheBudget",
      [](R& r) {
-       r.step.translation = {0.0, 0.079, 0.0};
+       r.step.translation = {0.0, 0.019, 0.0};
      },
      kNone, ""},
     {"StepBeyondTheBudget",
      [](R& r) {
-       r.step.translation = {0.0, -0.081, 0.0};
+       r.step.translation = {0.0, -0.021, 0.0};
      },
-     kContradicted, "off by 0.000, -0.081, 0.000 m in x, y, z"},
+     kContradicted, "off by 0.000, -0.021, 0.000 m in x, y, z"},
     {"StepBeyondTheBudgetAcrossAxes",
      [](R& r) {
        r.step.translation = {0.05, 0.05, 0.05};
@@ -83,27 +83,27 @@ const Case kCases[] = {
      kContradicted, "off by 0.050, 0.050, 0.050 m"},
     {"SameStepLessSure",
      [](R& r) {
-       r.step.translation = {0.0, 0.079, 0.0};
-       r.step.covariance_translation(2, 2) = 0.02 * 0.02;
+       r.step.translation = {0.0, 0.019, 0.0};
+       r.step.covariance_translation(2, 2) = 0.012 * 0.012;
      },
-     kContradicted, "off by 0.000, 0.079, 0.000 m"},
+     kContradicted, "off by 0.000, 0.019, 0.000 m"},
     {"TurnWithinTheBudget",
      [](R& r) {
-       r.step.rotation = {0.0, 0.0, radians(0.23)};
+       r.step.rotation = {0.0, 0.0, radians(0.039)};
      },
      kNone, ""},
     {"TurnBeyondTheBudget",
      [](R& r) {
-       r.step.rotation = {0.0, 0.0, radians(-0.25)};
+       r.step.rotation = {0.0, 0.0, radians(-0.042)};
      },
-     kContradicted, "turned by 0.250 deg"},
+     kContradicted, "turned by 0.042 deg"},
 
     // Unconstrained: by the geometry, or because too little is confirmed.
     {"StepNotSolved", [](R& r) { r.step = PlaneStep{}; }, kUnconstrained, "leave a direction free"},
     {"LessSureThanTranslationAllows", [](R& r) { r.step.covariance_translation(0, 0) = 0.038 * 0.038; },
      kUnconstrained, "to 0.038 m"},
-    {"JustSureEnoughInTranslation", [](R& r) { r.step.covariance_translation(0, 0) = 0.037 * 0.037; }, kNone,
-     ""},
+    {"JustSureEnoughInTranslation", [](R& r) { r.step.covariance_translation(0, 0) = 0.0124 * 0.0124; },
+     kNone, ""},
     {"LessSureAlongADiagonal",
      [](R& r) {  // 0.03 m in x and in y, fully correlated: 0.042 m along the diagonal
        r.step.covariance_translation.topLeftCorner<2, 2>().setConstant(0.03 * 0.03);

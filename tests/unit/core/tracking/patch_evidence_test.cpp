@@ -1,4 +1,5 @@
-// What many noisy looks at one patch come to; the looks are drawn here, the answers follow from the law's words.
+// What many noisy looks at one patch come to; the looks are drawn here, the answers follow from the law's
+// words.
 #include "core/tracking/patch_evidence.hpp"
 
 #include <gtest/gtest.h>
