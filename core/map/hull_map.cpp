@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <cstdio>
-#include <cstdlib>
 #include "core/filter/voxel_filter.hpp"
 #include "core/geometry/box.hpp"
 #include "core/map/surfels.hpp"
@@ -35,19 +33,6 @@ HullMap::HullMap(Cloud cloud_H)
   probes_H_ = subset_H_;
   for (const RimPoint& rim : rims_) {
     probes_H_.push_back(rim.p_H);
-  }
-  if (const char* name = getenv("DBGMAP")) {  // TEMPORARY
-    FILE* f = fopen(name, "w");
-    for (std::size_t i = 0; i < subset_H_.size(); ++i) {
-      const auto& s = surfels_[i];
-      const auto& p = subset_H_[i];
-      std::fprintf(f, "%d %d %d %.3f %.3f %.3f %.3f %.3f %.3f %d\n", int(s.patch), s.planar, int(s.surface),
-                   p.x(), p.y(), p.z(), s.normal_H.x(), s.normal_H.y(), s.normal_H.z(), int(s.movable));
-    }
-    for (auto& r : rims_)
-      std::fprintf(f, "%d 9 9 %.3f %.3f %.3f %.3f %.3f %.3f 0\n", int(r.patch), r.p_H.x(), r.p_H.y(),
-                   r.p_H.z(), r.across_H.x(), r.begin, r.end);
-    fclose(f);
   }
 }
 
