@@ -12,10 +12,7 @@ bool inside_any(const std::vector<Box>& boxes, const Point& p) {
 
 /// Takes a point of the hull to where it is `seconds` later.
 Pose drifted(const HullDrift& drift, double seconds) {
-  Pose T = Pose::Identity();
-  T.linear() = so3_exp(seconds * drift.turning);
-  T.translation() = drift.about_W + seconds * drift.velocity - T.linear() * drift.about_W;
-  return T;
+  return pose_about(drift.about_W, so3_exp(seconds * drift.turning), seconds * drift.velocity);
 }
 
 }  // namespace

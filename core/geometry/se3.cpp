@@ -34,6 +34,13 @@ Pose pose_from_xyz_rpy_deg(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rp
   return T;
 }
 
+Pose pose_about(const Eigen::Vector3d& centre, const Eigen::Matrix3d& R, const Eigen::Vector3d& shift) {
+  Pose T = Pose::Identity();
+  T.linear() = R;
+  T.translation() = centre + shift - R * centre;
+  return T;
+}
+
 Eigen::Matrix3d skew(const Eigen::Vector3d& w) {
   Eigen::Matrix3d W;
   W << 0.0, -w.z(), w.y(),  //

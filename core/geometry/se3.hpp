@@ -27,6 +27,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// Translation xyz in m, then rotation rpy in deg as the configuration gives them.
 [[nodiscard]] Pose pose_from_xyz_rpy_deg(const Eigen::Vector3d& xyz, const Eigen::Vector3d& rpy_deg);
 
+/// p -> R * (p - centre) + centre + shift.
+[[nodiscard]] Pose pose_about(const Eigen::Vector3d& centre, const Eigen::Matrix3d& R,
+                              const Eigen::Vector3d& shift);
+
 /// [w]x, so that skew(w) * v = w.cross(v).
 [[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& w);
 

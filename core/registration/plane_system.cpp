@@ -70,10 +70,7 @@ Matrix6 PlaneSystem::normal_matrix() const {
 }
 
 Pose pose_from_twist_about(const Eigen::Vector3d& centre, const Twist& twist) {
-  Pose T = Pose::Identity();
-  T.linear() = so3_exp(twist.head<3>());
-  T.translation() = centre + twist.tail<3>() - T.linear() * centre;
-  return T;
+  return pose_about(centre, so3_exp(twist.head<3>()), twist.tail<3>());
 }
 
 }  // namespace hulltrack

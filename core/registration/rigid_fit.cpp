@@ -11,12 +11,7 @@ constexpr double kLine = 1e-10;
 
 }  // namespace
 
-Pose RigidMotion::pose() const {
-  Pose T = Pose::Identity();
-  T.linear() = rotation;
-  T.translation() = centre + translation - rotation * centre;
-  return T;
-}
+Pose RigidMotion::pose() const { return pose_about(centre, rotation, translation); }
 
 Eigen::Vector3d RigidFit::centroid() const { return origin_ + sum_p_ / pairs_; }
 

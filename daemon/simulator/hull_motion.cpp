@@ -74,10 +74,7 @@ HullPose HullMotion::pose(double t) const {
 double HullMotion::ebb(double t) const { return run_distance(config_.ebb, t); }
 
 Pose HullMotion::transform(const HullPose& pose) const {
-  Pose T = Pose::Identity();
-  T.linear() = rotation_from_rpy(pose.rpy);
-  T.translation() = reference_point_H_ + pose.displacement - T.linear() * reference_point_H_;
-  return T;
+  return pose_about(reference_point_H_, rotation_from_rpy(pose.rpy), pose.displacement);
 }
 
 Pose HullMotion::T_W_H(double t) const { return transform(pose(t)); }
