@@ -1,6 +1,5 @@
 #include "core/tracking/hull_tracker.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -21,9 +20,7 @@ namespace {
 /// 1-sigma along the largest principal axis of the pose's error as the scan sees it: how uncertain the
 /// plane step is, and the step itself, which was not taken.
 double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) {
-  const Eigen::Matrix3d second_moment = covariance + step * step.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(second_moment, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+  return largest_sigma(covariance + step * step.transpose());
 }
 
 /// Half of the map's length, level, m.

@@ -1,8 +1,6 @@
-#include <Eigen/Eigenvalues>
-#include <cmath>
-
 #include "core/base/text.hpp"
 #include "core/tracking/integrity.hpp"
+#include "core/tracking/pose_covariance.hpp"
 
 namespace hulltrack {
 namespace {
@@ -35,11 +33,6 @@ constexpr std::uint32_t kFewestDisplaced = 4;
 bool is_finite(const PlaneStep& step) {
   return step.translation.allFinite() && step.rotation.allFinite() &&
          step.covariance_translation.allFinite() && step.covariance_rotation.allFinite();
-}
-
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 }
 
 IntegrityFinding judge_step(const PlaneStep& step) {
