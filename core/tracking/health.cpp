@@ -4,16 +4,13 @@
 #include <cmath>
 
 #include "core/base/text.hpp"
-#include "core/kinematics/joint_history.hpp"
 
 namespace hulltrack {
 namespace {
 
-// Two poses are each off by less than 5 cm. A hull that moves no faster than kFastest can show this much
-// beyond kFastest * dt before a jump is no longer explained by errors.
+// Two poses are each off by less than 5 cm. A hull that moves no faster than kFastestHull can show this much
+// beyond kFastestHull * dt before a jump is no longer explained by errors.
 constexpr double kJumpNoise = 0.10;  // m
-// Nothing moves a moored hull faster: twice the fastest jerk of a passing ship, a metre within some seconds.
-constexpr double kFastest = 0.6;  // m/s
 const double kTurnNoise = radians(0.3);
 // A moored ship rolls by a degree in a quarter of 8 s.
 const double kTurnRate = radians(1.0);  // 1/s
@@ -86,7 +83,7 @@ void check_continuity(HealthMemory& memory, const Evidence& e, Findings& finding
     return;
   }
   const double dt = std::max(0.0, to_seconds(e.time - memory.followed->time));
-  const double reach = kFastest * dt + kJumpNoise;
+  const double reach = kFastestHull * dt + kJumpNoise;
   if (reach > kUnseen) {
     memory.unique = false;
     memory.followed.reset();

@@ -55,6 +55,9 @@ struct Evidence {
 /// still end at the right place, those from several metres on at places of their own.
 inline constexpr double kUnseen = 1.0;  // m
 
+/// Nothing moves a moored hull faster: twice the fastest jerk of a passing ship, a metre within some seconds.
+inline constexpr double kFastestHull = 0.6;  // m/s
+
 struct HealthMemory {
   struct FollowedPose {
     MeasurementTime time;

@@ -24,8 +24,7 @@ constexpr double kClearlyBetter = 1.05;
 constexpr double kOtherPlace = 1.0;  // m
 // Searched through without a trustworthy pose: the hull has moved on meanwhile, begin again.
 constexpr int kFramesUntilSearchedAgain = 10;
-// As fast as an unseen hull is looked for, and as far. m/s, m
-constexpr double kFastestUnseen = 0.6;
+// As far as an unseen hull is looked for, m.
 constexpr double kFarthestUnseen = 60.0;
 
 // Voxels stand on their corners. Were their faces level, a deck just below one would give each voxel above it
@@ -44,14 +43,6 @@ constexpr double kSharedGain = 0.1;
 // to the other, 20 m away.
 constexpr double kCommonShift = 0.0005;              // m
 constexpr double kCommonTurn = kCommonShift / 20.0;  // rad
-
-Pose hull_pose(const Eigen::Vector3d& reference_H, const Eigen::Vector3d& displacement,
-               const Eigen::Matrix3d& R) {
-  Pose T_W_H = Pose::Identity();
-  T_W_H.linear() = R;
-  T_W_H.translation() = reference_H + displacement - R * reference_H;
-  return T_W_H;
-}
 
 BendShape bend_shape(const Eigen::Vector3d& reference_H, const HullMap& map) {
   return {reference_H.x(), map.length()};
@@ -141,8 +132,8 @@ Pose PoseFinder::followed(MeasurementTime time, const HealthMemory& memory) cons
   const MotionRecord::Motion motion = memory.motion.motion().value_or(MotionRecord::Motion{});
   const double dt = std::max(0.0, to_seconds(time - last.time));
   const Eigen::Vector3d rpy = rpy_from_rotation(last.rotation) + dt * motion.rpy_rate;
-  return hull_pose(config_.hull.reference_point, last.displacement + dt * motion.velocity,
-                   rotation_from_rpy(rpy))
+  return pose_about(config_.hull.reference_point, rotation_from_rpy(rpy),
+                    last.displacement + dt * motion.velocity)
       .inverse();
 }
 
@@ -158,7 +149,7 @@ Pose PoseFinder::best_start(MeasurementTime time, const HealthMemory& memory) {
   };
   if (memory.followed) {
     offer(followed(time, memory), 1.0);
-    offer(hull_pose(config_.hull.reference_point, memory.followed->displacement, memory.followed->rotation)
+    offer(pose_about(config_.hull.reference_point, memory.followed->rotation, memory.followed->displacement)
               .inverse(),
           1.0);
   }
@@ -249,7 +240,7 @@ void PoseFinder::begin_search(MeasurementTime time) {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   if (last_seen_) {
     const double unseen = std::max(0.0, to_seconds(time - last_seen_->time));
-    const double far = std::min(kFarthestUnseen, kFastestUnseen * unseen + kUnseen);
+    const double far = std::min(kFarthestUnseen, kFastestHull * unseen + kUnseen);
     reach.min.x() = std::min(reach.min.x(), static_cast<float>(last_seen_->displacement.x() - far));
     reach.max.x() = std::max(reach.max.x(), static_cast<float>(last_seen_->displacement.x() + far));
     rotation = last_seen_->rotation;
