@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/filter/voxel_filter.hpp"
+#include "core/map/plane_fit.hpp"
 
 namespace hulltrack {
 namespace {
@@ -103,24 +104,12 @@ bool is_on_rim(const Point& p, const std::vector<Neighbour>& neighbours, const C
   if (neighbours.size() < kFewestRimNeighbours) {
     return false;
   }
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const Neighbour& neighbour : neighbours) {
-    const Eigen::Vector3d d = (cloud[neighbour.index] - p).cast<double>();
-    sum += d;
-    squares += d * d.transpose();
-  }
-  const double n = static_cast<double>(neighbours.size());
-  const Eigen::Vector3d centroid = sum / n;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(squares / n - centroid * centroid.transpose());
-  const Eigen::Vector3d normal = solver.eigenvectors().col(0);
-  const auto spread = [&solver](int i) { return std::sqrt(std::max(0.0, solver.eigenvalues()[i])); };
-  if (spread(0) > kRimFlat || spread(1) < kRimNarrow || centroid.norm() > kRimOffCentre ||
-      std::abs(normal.z()) < kRimLevel) {
+  const PlaneFit fit = fit_plane(p, neighbours, cloud);
+  if (fit.spread[0] > kRimFlat || fit.spread[1] < kRimNarrow || fit.centroid.norm() > kRimOffCentre ||
+      std::abs(fit.normal.z()) < kRimLevel) {
     return false;
   }
-  rim.p_H = p + centroid.cast<float>();
+  rim.p_H = p + fit.centroid.cast<float>();
   return true;
 }
 

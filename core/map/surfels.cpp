@@ -1,7 +1,8 @@
 #include "core/map/surfels.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "core/map/plane_fit.hpp"
 
 namespace hulltrack {
 namespace {
@@ -25,24 +26,12 @@ Surfel surfel_of(const Point& p, const std::vector<Neighbour>& neighbours, const
   if (neighbours.size() < kFewestNeighbours) {
     return {};
   }
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const Neighbour& neighbour : neighbours) {
-    const Eigen::Vector3d d = (cloud[neighbour.index] - p).cast<double>();
-    sum += d;
-    squares += d * d.transpose();
-  }
-  const double n = static_cast<double>(neighbours.size());
-  const Eigen::Vector3d centroid = sum / n;
-  const Eigen::Matrix3d covariance = squares / n - centroid * centroid.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance);
-  const auto spread = [&solver](int i) { return std::sqrt(std::max(0.0, solver.eigenvalues()[i])); };
+  const PlaneFit fit = fit_plane(p, neighbours, cloud);
   Surfel surfel;
-  surfel.normal_H = solver.eigenvectors().col(0).cast<float>();
-  surfel.centre_H = p + centroid.cast<float>();
+  surfel.normal_H = fit.normal.cast<float>();
+  surfel.centre_H = p + fit.centroid.cast<float>();
   surfel.surface = classify(surfel.normal_H);
-  surfel.planar = spread(0) < kFlat && spread(1) > kNarrow && centroid.norm() < kOffCentre;
+  surfel.planar = fit.spread[0] < kFlat && fit.spread[1] > kNarrow && fit.centroid.norm() < kOffCentre;
   return surfel;
 }
 

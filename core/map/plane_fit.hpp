@@ -1,0 +1,23 @@
+// Which plane do the neighbours of a map point lie on, and how well?
+//
+// Principal component analysis. Frame of the cloud, metres. Pure. Precondition: at least one neighbour.
+// Cost: some 20 flops a neighbour, one 3 x 3 eigenproblem.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/geometry/cloud.hpp"
+#include "core/search/kdtree.hpp"
+
+namespace hulltrack {
+
+struct PlaneFit {
+  Eigen::Vector3d centroid;      // of the neighbours, from the point, m
+  Eigen::Vector3d normal;        // unit, sign arbitrary
+  std::array<double, 3> spread;  // RMS: from the plane, across its narrow and its wide direction, m
+};
+
+[[nodiscard]] PlaneFit fit_plane(const Point& p, const std::vector<Neighbour>& neighbours, const Cloud& cloud);
+
+}  // namespace hulltrack
