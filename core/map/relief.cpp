@@ -33,6 +33,7 @@ Relief::Relief(std::span<const Point> cloud_H) {
     float& top = top_[index(cell_of(p))];
     top = std::max(top, p.z());
   }
+  find_horizons();
   find_pits();
   raise_covers_place();
 }
@@ -63,7 +64,16 @@ float Relief::lowest_horizon(Cell from) const {
 
 bool Relief::in_pit(const Point& p) const {
   const Cell c = cell_of(p);
-  return inside(c) && lowest_horizon(c) >= p.z() + kDepth;
+  return inside(c) && horizon_[index(c)] >= p.z() + kDepth;
+}
+
+void Relief::find_horizons() {
+  horizon_.reserve(top_.size());
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      horizon_.push_back(lowest_horizon({column, row}));
+    }
+  }
 }
 
 void Relief::find_pits() {
@@ -73,7 +83,7 @@ void Relief::find_pits() {
     for (int column = 0; column < columns_; ++column) {
       const Cell c{column, row};
       const float top = top_[index(c)];
-      if (const float horizon = lowest_horizon(c); top != kNothing && horizon >= top + kDepth) {
+      if (const float horizon = horizon_[index(c)]; top != kNothing && horizon >= top + kDepth) {
         rim_[index(c)] = horizon;
         grown.push_back(c);
       }
@@ -86,7 +96,7 @@ void Relief::find_pits() {
     for (const auto& [dc, dr] : kDirections) {
       const Cell c{from.column + dc, from.row + dr};
       if (inside(c) && top_[index(c)] == kNothing && std::isnan(rim_[index(c)])) {
-        if (const float horizon = lowest_horizon(c); horizon != kNothing) {
+        if (const float horizon = horizon_[index(c)]; horizon != kNothing) {
           rim_[index(c)] = horizon;
           grown.push_back(c);
         }

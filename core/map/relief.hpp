@@ -53,6 +53,7 @@ class Relief {
            static_cast<std::size_t>(c.column);
   }
   [[nodiscard]] float lowest_horizon(Cell from) const;
+  void find_horizons();
   void find_pits();
   void raise_covers_place();
 
@@ -60,6 +61,7 @@ class Relief {
   int columns_ = 0;
   int rows_ = 0;
   std::vector<float> top_;          // per cell: its highest point; -infinity without one
+  std::vector<float> horizon_;      // per cell: the least, over all directions, of the highest structure
   std::vector<float> rim_;          // per cell of a pit: the height of its rim; NaN elsewhere
   std::vector<float> covers_from_;  // per cell: above this height is the covers' place; infinity = nowhere
 };
