@@ -18,6 +18,7 @@ struct PlaneFit {
   std::array<double, 3> spread;  // RMS: from the plane, across its narrow and its wide direction, m
 };
 
-[[nodiscard]] PlaneFit fit_plane(const Point& p, const std::vector<Neighbour>& neighbours, const Cloud& cloud);
+[[nodiscard]] PlaneFit fit_plane(const Point& p, const std::vector<Neighbour>& neighbours,
+                                 const Cloud& cloud);
 
 }  // namespace hulltrack

@@ -170,10 +170,11 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   IntegrityReport report = inspect(result.T_W_H);
   result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
 
-  if (config.registration.method == RegistrationMethod::automatic) {
-    report.step = certainty_of(found, joints, result);
-  }
-  integrity.weigh(*map, result.T_W_H, reference_H + result.displacement, report);
+  const Eigen::Vector3d reference_W = reference_H + result.displacement;
+  report.step = config.registration.method == RegistrationMethod::automatic
+                    ? certainty_of(found, joints, result)
+                    : integrity.step(reference_W);
+  integrity.weigh(*map, result.T_W_H, reference_W, report);
   if (report.step.solved) {
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
     result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);
@@ -189,7 +190,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
 /// The scan against the map at T_W_H.
 IntegrityReport HullTracker::Impl::inspect(const Pose& T_W_H) {
   visibility.run(*map, map->probes_H(), T_W_H, views, scan_filter.sensors(), visible);
-  return integrity.run(*map, visible, T_W_H, views, T_W_H * config.hull.reference_point);
+  return integrity.run(*map, visible, T_W_H, views);
 }
 
 /// Does another place explain the scan as well? One is examined a frame.
@@ -202,8 +203,10 @@ void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result) {
     const bool wrong = contradicted(evidence.integrity);
     finder.settle(T_H_W, T_H_W, wrong);
     if (const auto rival = wrong ? std::nullopt : finder.rival(T_H_W)) {
-      finder.settle(rival->start, rival->T_H_W,
-                    contradicted(judge_integrity(inspect(rival->T_H_W.inverse()))));
+      const Pose T_W_H = rival->T_H_W.inverse();
+      IntegrityReport report = inspect(T_W_H);
+      report.step = integrity.step(T_W_H * config.hull.reference_point);
+      finder.settle(rival->start, rival->T_H_W, contradicted(judge_integrity(report)));
     }
   }
   evidence.search = finder.evidence(T_H_W);

@@ -101,7 +101,7 @@ const RayEnd* nearest_ray(const std::vector<RayEnd>& rays) {
 }  // namespace
 
 IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint> visible, const Pose& T_W_H,
-                               std::span<const ScanView> views, const Eigen::Vector3d& reference_W) {
+                               std::span<const ScanView> views) {
   IntegrityReport report;
   observations_.clear();
   looks_.clear();
@@ -114,7 +114,6 @@ IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint>
       look_at_rim(map.rims()[point.index - surfels], point, T_W_H, views[point.lidar]);
     }
   }
-  report.step = solve_plane_step(observations_, reference_W);
   return report;
 }
 

@@ -90,10 +90,15 @@ class Integrity {
   static constexpr float kPlaneGate = 0.15F;  // m
   static constexpr float kBehind = 0.7F;      // m
 
-  /// `visible`: of map.probes_H(), at the pose T_W_H. `reference_W`: the hull's reference point at that pose.
+  /// `visible`: of map.probes_H(), at the pose T_W_H. Neither the step nor the patches are in the report yet.
   [[nodiscard]] IntegrityReport run(const HullMap& map, std::span<const VisiblePoint> visible,
-                                    const Pose& T_W_H, std::span<const ScanView> views,
-                                    const Eigen::Vector3d& reference_W);
+                                    const Pose& T_W_H, std::span<const ScanView> views);
+
+  /// The step that the scan of the last run() asks for. `reference_W`: the hull's reference point at its
+  /// pose.
+  [[nodiscard]] PlaneStep step(const Eigen::Vector3d& reference_W) const {
+    return solve_plane_step(observations_, reference_W);
+  }
 
   /// What the scan of the last run() says about the ship, at its pose but for report.step; fills
   /// report.patches. Once a frame, for the frame's own pose.
@@ -102,8 +107,6 @@ class Integrity {
 
   /// Another ship may lie there from now on.
   void forget() { evidence_.reset(0); }
-
-  [[nodiscard]] const PatchEvidence& evidence() const { return evidence_; }
 
  private:
   /// What one probe says about its patch, before the pose's remaining error is taken off.

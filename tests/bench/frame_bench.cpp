@@ -156,7 +156,8 @@ void time_parts(const FrameRecording& recording, const HullMap& map, Figures& fi
     done("scan view");
     visibility.run(map, map.subset_H(), T_W_H, views, filter.sensors(), visible);
     done("visibility");
-    static_cast<void>(integrity.run(map, visible, T_W_H, views, Eigen::Vector3d::Zero()));
+    static_cast<void>(integrity.run(map, visible, T_W_H, views));
+    static_cast<void>(integrity.step(Eigen::Vector3d::Zero()));
     done("integrity");
     const KdTree tree(filtered.hull_W, TreeUse::one_batch);
     done("scan tree");

@@ -47,7 +47,10 @@ class IntegrityRun : public testing::Test {
     }
     std::vector<ScanView> views(1);
     views[0].rebuild(returns, Pose::Identity());
-    return Integrity().run(map, visible, T_W_H, views, reference);
+    Integrity integrity;
+    IntegrityReport report = integrity.run(map, visible, T_W_H, views);
+    report.step = integrity.step(reference);
+    return report;
   }
 
   [[nodiscard]] std::uint32_t planar(SurfaceClass surface) const {
