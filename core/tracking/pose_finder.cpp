@@ -8,9 +8,10 @@ namespace {
 
 // Points of a scan that approaches and scores use: at 500 the share that a pose explains has a sigma of 2 %.
 constexpr std::size_t kFew = 500;
-// A scan that leaves fewer points than this is thinned to half the distance: its frame has the time for twice
-// as many, and a sparse sensor or rain the need of them. A dense sensor leaves some 7,000.
-constexpr std::size_t kSparse = 4000;
+// A scan that leaves fewer points than this is a sparse sensor's, or one in rain: it needs more of them and has
+// the time, since its other steps are quick. A dense sensor leaves some 7,000.
+constexpr std::size_t kSparse = 5000;
+constexpr std::size_t kMostOfSparse = 8000;
 // A scan with fewer points than this on and around the hull is none to search with.
 constexpr std::size_t kFewestForSearch = 100;
 // All starts are aligned in the time that health needs to return anyway.
@@ -48,13 +49,21 @@ BendShape bend_shape(const Eigen::Vector3d& reference_H, const HullMap& map) {
   return {reference_H.x(), map.length()};
 }
 
+/// All of `cloud`, or `most` points of it.
+void take_evenly(const Cloud& cloud, std::size_t most, Cloud& out) {
+  out.clear();
+  const std::size_t count = std::min(most, cloud.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(cloud[i * cloud.size() / count]);
+  }
+}
+
 }  // namespace
 
 PoseFinder::PoseFinder(const TrackerConfig& config, const HullMap& map)
     : config_(config),
       map_(&map),
       voxel_filter_(config.registration.voxel_size),
-      fine_voxel_filter_(config.registration.voxel_size / 2.0),
       point_icp_({config.registration.max_correspondence_distance, config.registration.max_iterations,
                   config.registration.translation_epsilon, config.registration.rotation_epsilon}),
       plane_icp_({.max_iterations = config.registration.max_iterations},
@@ -71,20 +80,17 @@ void PoseFinder::thin(const Cloud& hull_W) {
     for (const Point& p : hull_W) {
       askew_.push_back(kAskew * p);
     }
-    std::span<const std::uint32_t> selected = voxel_filter_.select(askew_);
+    const std::span<const std::uint32_t> selected = voxel_filter_.select(askew_);
     if (selected.size() < kSparse) {
-      selected = fine_voxel_filter_.select(askew_);
-    }
-    thinned_W_.clear();
-    for (const std::uint32_t i : selected) {
-      thinned_W_.push_back(hull_W[i]);
+      take_evenly(hull_W, kMostOfSparse, thinned_W_);
+    } else {
+      thinned_W_.clear();
+      for (const std::uint32_t i : selected) {
+        thinned_W_.push_back(hull_W[i]);
+      }
     }
   }
-  few_W_.clear();
-  const std::size_t count = std::min(kFew, thinned_W_.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    few_W_.push_back(thinned_W_[i * thinned_W_.size() / count]);
-  }
+  take_evenly(thinned_W_, kFew, few_W_);
 }
 
 PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory) {

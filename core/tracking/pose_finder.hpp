@@ -67,7 +67,6 @@ class PoseFinder {
   TrackerConfig config_;
   const HullMap* map_;
   VoxelFilter voxel_filter_;
-  VoxelFilter fine_voxel_filter_;
   PointToPointIcp point_icp_;
   PointToPlaneIcp plane_icp_;
   HullSearch search_;
