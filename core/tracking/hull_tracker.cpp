@@ -58,7 +58,7 @@ struct HullTracker::Impl {
         map(std::move(m)),
         scan_filter(machine, std::move(sensors), c.hull.region),
         finder(c, *map),
-        visibility(c.health.metric_range),
+        visibility(std::max(Integrity::kSight, c.health.metric_range)),
         motion(bounding_box(map->cloud_H())),
         views(scan_filter.sensors().size()) {}
 
@@ -174,7 +174,8 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   report.step = config.registration.method == RegistrationMethod::automatic
                     ? certainty_of(found, joints, result)
                     : integrity.step(reference_W);
-  integrity.weigh(*map, result.T_W_H, reference_W, report);
+  integrity.weigh(*map, result.T_W_H, reference_W, {reference_H.x(), map->length()}, finder.bend().d,
+                  report);
   if (report.step.solved) {
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
     result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);
@@ -232,8 +233,10 @@ DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H, const KdTree& scan
       visibility.run(*map, map->cloud_H(), T_W_H, views, scan_filter.sensors(), visible);
     }
     const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
+    const auto range = static_cast<float>(config.health.metric_range);
     for (const VisiblePoint& point : visible) {
-      if (point.index < candidates_H.size()) {  // behind the subset come the rims
+      const bool is_rim = point.index >= candidates_H.size();  // behind the subset
+      if (!is_rim && point.p_L.squaredNorm() <= range * range) {
         add(candidates_H[point.index]);
       }
     }

@@ -118,13 +118,15 @@ IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint>
 }
 
 void Integrity::weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
-                      IntegrityReport& report) {
+                      const BendShape& shape, double bend, IntegrityReport& report) {
   if (evidence_.patches() != map.patches()) {
     evidence_.reset(map.patches());
   }
   evidence_.begin_frame();
   if (report.step.solved && (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
-    collect_evidence(T_W_H, report.step, reference_W);
+    const PlaneStep& step = report.step;
+    collect_evidence({T_W_H, reference_W, step.translation, step.rotation, shape, bend},
+                     step.covariance_translation);
   }
   report.patches = evidence_.report();
 }
@@ -207,15 +209,18 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
   }
 }
 
-/// The looks of a frame whose pose is right but for `step`, which is taken off.
-void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
-                                 const Eigen::Vector3d& reference_W) {
-  const auto moved = [&](const Eigen::Vector3d& p_W) -> Eigen::Vector3d {
-    return step.translation + step.rotation.cross(p_W - reference_W);
-  };
+Eigen::Vector3d Integrity::Shift::at(const Eigen::Vector3d& p_W) const {
+  const double x_H = T_W_H.linear().col(0).dot(p_W - T_W_H.translation());
+  return translation + rotation.cross(p_W - reference_W) + bend * shape.rise(x_H) * T_W_H.linear().col(2);
+}
+
+/// The looks of a frame whose pose is right and whose hull is that of the map but for `shift`, which is taken
+/// off.
+void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& covariance_translation) {
+  const Pose& T_W_H = shift.T_W_H;
   // A direction that the pose's own uncertainty blurs says nothing about the ship.
   const auto sharp = [&](const Eigen::Vector3d& n_W) {
-    return n_W.dot(step.covariance_translation * n_W) < kBlurred * kBlurred;
+    return n_W.dot(covariance_translation * n_W) < kBlurred * kBlurred;
   };
   const RimPoint* last = nullptr;
   bool used = false;
@@ -224,7 +229,7 @@ void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
   for (const RimRay& ray : rim_rays_) {
     if (ray.rim != last) {
       last = ray.rim;
-      const Eigen::Vector3d moved_H = T_W_H.linear().transpose() * moved(T_W_H * ray.rim->p_H.cast<double>());
+      const Eigen::Vector3d moved_H = T_W_H.linear().transpose() * shift.at(T_W_H * ray.rim->p_H.cast<double>());
       lift = static_cast<float>(moved_H.z());
       aside = ray.rim->across_H.dot(moved_H.cast<float>());
       used = sharp(T_W_H.linear() * ray.rim->across_H.cast<double>());
@@ -242,7 +247,7 @@ void Integrity::collect_evidence(const Pose& T_W_H, const PlaneStep& step,
         if (!sharp(look.seen.n_W)) {
           break;
         }
-        evidence_.add_offset(look.patch, look.seen.offset - look.seen.n_W.dot(moved(look.seen.p_W)),
+        evidence_.add_offset(look.patch, look.seen.offset - look.seen.n_W.dot(shift.at(look.seen.p_W)),
                              look.seen.weight);
         break;
       case PatchLook::through:

@@ -21,6 +21,7 @@
 #include "core/base/status.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/map/hull_map.hpp"
+#include "core/registration/bend.hpp"
 #include "core/tracking/patch_evidence.hpp"
 #include "core/tracking/scan_view.hpp"
 #include "core/tracking/visibility.hpp"
@@ -89,6 +90,9 @@ class Integrity {
  public:
   static constexpr float kPlaneGate = 0.15F;  // m
   static constexpr float kBehind = 0.7F;      // m
+  /// Surfaces are looked at as far as this from the sensor, m: with lasers 2 deg apart the lines of a scan lie
+  /// 1.4 m apart there, and every fourth surfel still meets a ray.
+  static constexpr double kSight = 40.0;
 
   /// `visible`: of map.probes_H(), at the pose T_W_H. Neither the step nor the patches are in the report yet.
   [[nodiscard]] IntegrityReport run(const HullMap& map, std::span<const VisiblePoint> visible,
@@ -100,10 +104,10 @@ class Integrity {
     return solve_plane_step(observations_, reference_W);
   }
 
-  /// What the scan of the last run() says about the ship, at its pose but for report.step; fills
-  /// report.patches. Once a frame, for the frame's own pose.
+  /// What the scan of the last run() says about the ship, at its pose but for report.step and bent by `bend`
+  /// (m) along `shape`; fills report.patches. Once a frame, for the frame's own pose.
   void weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
-             IntegrityReport& report);
+             const BendShape& shape, double bend, IntegrityReport& report);
 
   /// Another ship may lie there from now on.
   void forget() { evidence_.reset(0); }
@@ -125,7 +129,15 @@ class Integrity {
   void look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
                       IntegrityReport& report);
   void look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
-  void collect_evidence(const Pose& T_W_H, const PlaneStep& step, const Eigen::Vector3d& reference_W);
+  /// Where the scan has the point of the ship that the map and T_W_H put at p_W, less p_W.
+  struct Shift {
+    Pose T_W_H;
+    Eigen::Vector3d reference_W, translation, rotation;
+    BendShape shape;
+    double bend;
+    [[nodiscard]] Eigen::Vector3d at(const Eigen::Vector3d& p_W) const;
+  };
+  void collect_evidence(const Shift& shift, const Eigen::Matrix3d& covariance_translation);
 
   std::vector<SurfelObservation> observations_;
   std::vector<RayEnd> rays_;

@@ -25,7 +25,7 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
     const ScanView& view = views[lidar];
     const Pose T_L_H = view.T_W_L().inverse() * T_W_H;
     const auto min_range = static_cast<float>(sensors[lidar].min_range);
-    const auto range = static_cast<float>(std::min(sensors[lidar].max_range, metric_range_));
+    const auto range = static_cast<float>(std::min(sensors[lidar].max_range, farthest_));
     render(map.occluders_H(), T_L_H, range);
     sight(candidates_H, T_L_H, [&](std::size_t candidate, const Sightings& from_L, std::size_t i) {
       const float r2 = from_L.range2[i];

@@ -1,7 +1,7 @@
 // Which map points can this scan be expected to see, if the hull is where the pose says? (ICD 3)
 //
 // A point is visible to a LiDAR if, seen from its mid-scan pose, it lies in a direction that the LiDAR looks
-// at, between min_range and min(max_range, metric_range); if it is front-most in a range image of the map
+// at, between min_range and the nearer of max_range and `farthest`; if it is front-most in a range image of the map
 // (cells of 1 deg, 0.4 m tolerance); and if the scan has no nearer return there. Seen by one LiDAR is enough.
 // Frames: map in H, result in L of the LiDAR that sees it; metres.
 // Thread rule: one owner, scratch is kept. Cost: a few ns a map occluder and candidate.
@@ -25,7 +25,8 @@ struct VisiblePoint {
 
 class Visibility {
  public:
-  explicit Visibility(double metric_range) : metric_range_(metric_range) {}
+  /// `farthest`: m from the sensor.
+  explicit Visibility(double farthest) : farthest_(farthest) {}
 
   /// `candidates_H`: map points to judge. `views` and `sensors`: one a LiDAR. `out` is replaced, in order of
   /// the candidates.
@@ -37,7 +38,7 @@ class Visibility {
   void render(const PointBlocks& occluders_H, const Pose& T_L_H, float range);
   void splat(SphericalGrid::Cell cell, float r);
 
-  double metric_range_;
+  double farthest_;
   std::vector<float> cell_nearest_;  // per cell: of the occluders in it, squared, m^2
   std::vector<float> map_nearest_;   // per cell: of the occluders that cover it, m
   std::vector<bool> seen_;           // per candidate, by an earlier LiDAR
