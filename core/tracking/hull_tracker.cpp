@@ -7,6 +7,7 @@
 
 #include "core/base/text.hpp"
 #include "core/geometry/box.hpp"
+#include "core/tracking/expected_distance.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
 #include "core/tracking/pose_covariance.hpp"
@@ -40,6 +41,7 @@ struct HullTracker::Impl {
   PoseFinder finder;
   Visibility visibility;
   Integrity integrity;
+  ExpectedDistance expected_distance;
   HealthMemory memory;
   MotionGauge motion;
 
@@ -168,7 +170,12 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
   IntegrityReport report = inspect(result.T_W_H);
+  std::optional<double> q1_expected;
+  if (config.metrics_scope != MetricsScope::whole_map) {  // it speaks of what is in view
+    q1_expected = expected_distance.q1(*map, visible, result.T_W_H, views);
+  }
   result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
+  result.metrics.q1_expected = q1_expected;
 
   const Eigen::Vector3d reference_W = reference_H + result.displacement;
   report.step = config.registration.method == RegistrationMethod::automatic

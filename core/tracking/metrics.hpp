@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace hulltrack {
@@ -17,6 +18,8 @@ struct DistanceMetrics {
   double q3 = 0.0;           // 75th percentile, m
   double rms = 0.0;          // m
   std::uint32_t points = 0;  // map points that the figures stand on
+  /// What q1 should be at this pose, m (expected_distance.hpp); nothing where that cannot be told.
+  std::optional<double> q1_expected = {};
 };
 
 /// Percentiles interpolate linearly between order statistics: rank p (n - 1), counted from 0.

@@ -104,6 +104,11 @@ std::string frame_csv_line(const TrackResult& r, std::optional<double> processin
   append_motion(line, r.motion);
   append_bend(line, r);
   append_covariance(line, r);
+  if (r.metrics.q1_expected) {
+    append(line, *r.metrics.q1_expected);
+  } else {
+    line += ',';
+  }
   line.pop_back();
   return line;
 }

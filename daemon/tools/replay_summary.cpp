@@ -85,6 +85,7 @@ void ReplaySummary::add(const TrackResult& r, double processing_ms) {
               r.converged,
               r.iterations,
               r.metrics.valid ? r.metrics.q1 : -1.0,
+              r.metrics.q1_expected.value_or(-1.0),
               processing_ms};
   if (const auto truth = truth_at(truth_, frame.t_ns)) {
     frame.moving = truth_speed(truth_, frame.t_ns) > max_speed_;
@@ -135,11 +136,15 @@ std::string ReplaySummary::states_text() const {
 
 std::string ReplaySummary::figures_text(bool with_timing) const {
   std::vector<double> q1;
+  std::vector<double> q1_expected;
   std::vector<double> iterations;
   std::vector<double> ms;
   for (const Frame& f : frames_) {
     if (f.q1 >= 0.0) {
       q1.push_back(f.q1);
+    }
+    if (f.q1_expected >= 0.0) {
+      q1_expected.push_back(f.q1_expected);
     }
     if (f.registered) {
       iterations.push_back(f.iterations);
@@ -147,7 +152,12 @@ std::string ReplaySummary::figures_text(bool with_timing) const {
     ms.push_back(f.ms);
   }
   std::string text =
-      format_text("Q1          median %.3f m, 99 %% %.3f m\n", percentile(q1, 0.5), percentile(q1, 0.99));
+      format_text("Q1          median %.3f m, 99 %% %.3f m", percentile(q1, 0.5), percentile(q1, 0.99));
+  if (!q1_expected.empty()) {
+    text += format_text("; expected median %.3f m, 99 %% %.3f m", percentile(q1_expected, 0.5),
+                        percentile(q1_expected, 0.99));
+  }
+  text += '\n';
   text += format_text("iterations  median %.0f, 99 %% %.0f\n", percentile(iterations, 0.5),
                       percentile(iterations, 0.99));
   if (with_timing) {

@@ -41,7 +41,8 @@ class ReplaySummary {
     bool registered;
     bool converged;
     int iterations;
-    double q1;  // m, -1 without metrics
+    double q1;           // m, -1 without metrics
+    double q1_expected;  // m, -1 where it cannot be told
     double ms;
     double error = -1.0;     // m, -1 = unknown
     double turn_deg = -1.0;  // deg

@@ -69,7 +69,8 @@ TEST(HullTracker, FindsAMooredHullAndSaysSo) {
     EXPECT_EQ(result.state, State::tracking) << result.reason;
     EXPECT_TRUE(result.health);
     EXPECT_LT(error(result, T_W_H), 0.03);
-    EXPECT_LT(result.metrics.q1, 0.12);
+    ASSERT_TRUE(result.metrics.q1_expected);
+    EXPECT_NEAR(result.metrics.q1 / *result.metrics.q1_expected, 1.0, 0.25);
     EXPECT_GT(result.sigma_translation, 0.0);
     EXPECT_LT(result.sigma_translation, 0.05);
   }

@@ -53,11 +53,20 @@ TEST(FrameCsv, WhatIsUnknownIsEmpty) {
   not_registered.state = State::fault;
   not_registered.faults = fault::plc_stale;
   const std::string line = frame_csv_line(not_registered, std::nullopt);
-  EXPECT_EQ(line, "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0," + std::string(10 + 21, ','));
-  EXPECT_EQ(columns(line).size(), 21U + 10U + 21U);
+  EXPECT_EQ(line, "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0," + std::string(10 + 21 + 1, ','));
+  EXPECT_EQ(columns(line).size(), 21U + 10U + 21U + 1U);
   TrackResult sigma_alone = result(3, 0.1, State::tracking);
   sigma_alone.sigma_translation = 0.01;
   EXPECT_EQ(columns(frame_csv_line(sigma_alone, 1.5))["c_rx_rx"], "") << "nobody's covariance is zero";
+}
+
+TEST(FrameCsv, WhatQ1ShouldBeComesLast) {
+  TrackResult r = result(3, 0.1, State::tracking);
+  EXPECT_EQ(columns(frame_csv_line(r, 1.5))["q1_expected"], "");
+  r.metrics.q1_expected = 0.0625;
+  const std::string line = frame_csv_line(r, 1.5);
+  EXPECT_EQ(columns(line)["q1_expected"], "0.0625");
+  EXPECT_THAT(line, ::testing::EndsWith(",0.0625"));
 }
 
 TEST(FrameCsv, MotionHasTheUnitsOfTheOperator) {
@@ -133,6 +142,17 @@ TEST(ReplaySummary, CountsWrongHealthyFramesAndTheReaction) {
   EXPECT_THAT(text, HasSubstr("frame 32: the pose is off by 0.10 m; health 0 after 0.3 s")) << text;
   EXPECT_THAT(text, HasSubstr("median 2.0 ms"));
   EXPECT_EQ(summary.text(false).find(" ms"), std::string::npos);
+}
+
+TEST(ReplaySummary, WhatQ1ShouldBeStandsBesideIt) {
+  ReplaySummary summary({}, 0.3);
+  TrackResult r = result(0, 0.0, State::tracking);
+  summary.add(r, 1.0);
+  EXPECT_THAT(summary.text(false), HasSubstr("Q1          median 0.070 m, 99 % 0.070 m\n"));
+  r.metrics.q1_expected = 0.0625;
+  summary.add(r, 1.0);
+  EXPECT_THAT(summary.text(false),
+              HasSubstr("Q1          median 0.070 m, 99 % 0.070 m; expected median 0.062 m, 99 % 0.062 m\n"));
 }
 
 TEST(ReplaySummary, WithoutTruthThereAreNoErrors) {
