@@ -44,19 +44,46 @@ void check_registration(const HealthLimits& limits, const Evidence& e, Findings&
   }
 }
 
+/// Q1 against what this sensor should see at this pose.
+void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Findings& findings) {
+  if (!metrics.q1_expected) {
+    if (!health.q1_healthy) {
+      findings.add(
+          State::degraded, fault::q1_high,
+          format_text("Q1 is %.3f m; too few rays meet the map to tell what it should be", metrics.q1));
+    }
+    return;
+  }
+  const double ratio = metrics.q1 / *metrics.q1_expected;
+  const auto check = [&](State at_best, double limit, const char* name) {
+    if (!(ratio <= limit)) {
+      findings.add(at_best, fault::q1_high,
+                   format_text("Q1 %.3f m is %.2f times the %.3f m that this sensor should see, %s is %.2f",
+                               metrics.q1, ratio, *metrics.q1_expected, name, limit));
+    }
+  };
+  check(State::lost, health.q1_ratio_lost, "q1_ratio_lost");
+  check(State::degraded, health.q1_ratio_healthy, "q1_ratio_healthy");
+}
+
+/// Q1 against the limits that a site sets.
+void check_q1(const HealthConfig& health, double q1, Findings& findings) {
+  const auto check = [&](State at_best, const std::optional<double>& limit, const char* name) {
+    if (limit && !(q1 <= *limit)) {
+      findings.add(at_best, fault::q1_high, format_text("Q1 %.3f m is above %s %.3f m", q1, name, *limit));
+    }
+  };
+  check(State::lost, health.q1_lost, "q1_lost");
+  check(State::degraded, health.q1_healthy, "q1_healthy");
+}
+
 void check_distances(const HealthLimits& limits, const Evidence& e, Findings& findings) {
   if (!e.metrics.valid) {
     findings.add(State::lost, fault::q1_high, "no part of the map is in view");
     return;
   }
-  const double q1 = e.metrics.q1;
-  if (q1 > limits.health.q1_lost) {
-    findings.add(State::lost, fault::q1_high,
-                 format_text("Q1 %.3f m is above q1_lost %.3f m", q1, limits.health.q1_lost));
-  } else if (!(q1 <= limits.health.q1_healthy)) {
-    findings.add(State::degraded, fault::q1_high,
-                 format_text("Q1 %.3f m is above q1_healthy %.3f m", q1, limits.health.q1_healthy));
-  }
+  check_ratio(limits.health, e.metrics, findings);
+  check_q1(limits.health, e.metrics.q1, findings);
 }
 
 void check_integrity(const Evidence& e, Findings& findings) {

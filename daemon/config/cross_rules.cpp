@@ -166,18 +166,27 @@ void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
   }
 }
 
+void check_health(const HealthConfig& health, Broken& broken) {
+  const auto check = [&](const std::string& healthy, double most, const std::string& lost, double above) {
+    if (most > above) {
+      broken.push_back({{"health." + healthy, "health." + lost},
+                        "is " + number_text(most) + ", above " + lost + " = " + number_text(above) +
+                            "; it must be at most " + lost});
+    }
+  };
+  check("q1_ratio_healthy", health.q1_ratio_healthy, "q1_ratio_lost", health.q1_ratio_lost);
+  if (health.q1_healthy && health.q1_lost) {
+    check("q1_healthy", *health.q1_healthy, "q1_lost", *health.q1_lost);
+  }
+}
+
 }  // namespace
 
 std::vector<BrokenRule> check_cross_rules(const Config& config) {
   Broken broken;
   check_plc(config.plc, broken);
   check_lidars(config.lidars, broken);
-  const HealthConfig& health = config.tracker.health;
-  if (health.q1_healthy > health.q1_lost) {
-    broken.push_back({{"health.q1_healthy", "health.q1_lost"},
-                      "is " + number_text(health.q1_healthy) + ", above q1_lost = " +
-                          number_text(health.q1_lost) + "; it must be at most q1_lost"});
-  }
+  check_health(config.tracker.health, broken);
   return broken;
 }
 

@@ -50,6 +50,24 @@ Key box(std::string name, Box& member) {
           .set = [&member](const ConfigValue& value) { member = box_of(std::get<Numbers>(value)); }};
 }
 
+Key optional_number(std::string name, std::optional<double>& member, double min, double max,
+                    const char* unit) {
+  return {.name = std::move(name),
+          .allowed = "a number from " + number_text(min) + " to " + number_text(max) + " (" + unit +
+                     "), or 0 for none",
+          .legal =
+              [=](const ConfigValue& value) {
+                const double given = std::get<double>(value);
+                return given == 0.0 || (given >= min && given <= max);
+              },
+          .get = [&member] { return member.value_or(0.0); },
+          .set =
+              [&member](const ConfigValue& value) {
+                const double given = std::get<double>(value);
+                member = given == 0.0 ? std::nullopt : std::optional(given);
+              }};
+}
+
 Key optional_box(std::string name, std::optional<Box>& member) {
   return {.name = std::move(name),
           .allowed = std::string(kBoxAllowed) + ", or [] for none",

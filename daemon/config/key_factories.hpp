@@ -67,6 +67,10 @@ inline Key number(std::string name, double& member, double min, double max, cons
           .set = [&member](const ConfigValue& value) { member = std::get<double>(value); }};
 }
 
+/// A number, or 0 for none; min > 0.
+Key optional_number(std::string name, std::optional<double>& member, double min, double max,
+                    const char* unit);
+
 /// An angle in degrees that has been through radians, without the digits that this cost it.
 [[nodiscard]] inline double tidy_degrees(double rad) {
   return std::round(degrees(rad) * 1e10) / 1e10 + 0.0;  // never -0

@@ -127,8 +127,10 @@ Section tracking_section(Config& config) {
 
 Section health_section(HealthConfig& health) {
   return {"health",
-          {number("q1_healthy", health.q1_healthy, 0.001, 10.0, "m"),
-           number("q1_lost", health.q1_lost, 0.001, 10.0, "m"),
+          {number("q1_ratio_healthy", health.q1_ratio_healthy, 1.0, 100.0),
+           number("q1_ratio_lost", health.q1_ratio_lost, 1.0, 100.0),
+           optional_number("q1_healthy", health.q1_healthy, 0.001, 10.0, "m"),
+           optional_number("q1_lost", health.q1_lost, 0.001, 10.0, "m"),
            number("metric_range", health.metric_range, 1.0, 1000.0, "m"),
            whole("min_matched", health.min_matched, 3, 1'000'000),
            whole("recover_frames", health.recover_frames, 1, 1000),

@@ -16,12 +16,13 @@ Evidence good(int frame) {
   e.time = MeasurementTime{frame * milliseconds(100)};
   e.bracketed = e.registered = e.converged = true;
   e.matched = 1000;
-  e.metrics = {true, 0.08, 0.1, 0.1, 0.12, 0.1, 3000};
+  e.metrics = {true, 0.08, 0.1, 0.1, 0.12, 0.1, 3000, 0.08};
   return e;
 }
 
 /// A machine that runs frame after frame.
 struct Machine {
+  HealthLimits set = limits();
   HealthMemory memory;
   int frame = 0;
 
@@ -30,7 +31,7 @@ struct Machine {
     if (change) {
       change(e);
     }
-    auto [next, verdict] = judge_health(limits(), memory, e);
+    auto [next, verdict] = judge_health(set, memory, e);
     memory = next;
     return verdict;
   }
@@ -70,8 +71,11 @@ const std::vector<Case>& cases() {
        },
        State::degraded, fault::not_converged},
       {"few matches", [](Evidence& e) { e.matched = 199; }, State::lost, fault::few_matches},
-      {"Q1 between the limits", [](Evidence& e) { e.metrics.q1 = 0.121; }, State::degraded, fault::q1_high},
-      {"Q1 above lost", [](Evidence& e) { e.metrics.q1 = 0.251; }, State::lost, fault::q1_high},
+      {"Q1 between the limits", [](Evidence& e) { e.metrics.q1 = 1.51 * 0.08; }, State::degraded,
+       fault::q1_high},
+      {"Q1 above lost", [](Evidence& e) { e.metrics.q1 = 3.01 * 0.08; }, State::lost, fault::q1_high},
+      {"nothing to expect of Q1", [](Evidence& e) { e.metrics.q1_expected.reset(); }, State::degraded,
+       fault::q1_high},
       {"no map in view", [](Evidence& e) { e.metrics.valid = false; }, State::lost, fault::q1_high},
       {"contradicted", [](Evidence& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; },
        State::lost, fault::contradicted},
@@ -107,6 +111,50 @@ TEST(Health, EveryFailedCheckTakesHealthAtOnceAndSaysWhy) {
     EXPECT_EQ(verdict.faults, c.faults) << c.what;
     EXPECT_FALSE(verdict.reason.empty()) << c.what;
   }
+}
+
+/// What a machine that was tracking says of one frame with this Q1.
+HealthVerdict verdict_on(double q1, std::optional<double> expected, const HealthLimits& set = limits()) {
+  Machine machine;
+  machine.set = set;
+  machine.run(10);
+  return machine.step([&](Evidence& e) {
+    e.metrics.q1 = q1;
+    e.metrics.q1_expected = expected;
+  });
+}
+
+TEST(Health, JudgesQ1ByWhatTheSensorShouldSee) {
+  EXPECT_EQ(verdict_on(0.6, 0.41).state, State::tracking) << "a sparse sensor";
+  EXPECT_EQ(verdict_on(0.11, 0.07).state, State::degraded) << "a dense one";
+  const HealthVerdict lost = verdict_on(0.31, 0.1);
+  EXPECT_EQ(lost.state, State::lost);
+  EXPECT_EQ(lost.reason,
+            "Q1 0.310 m is 3.10 times the 0.100 m that this sensor should see, q1_ratio_lost is 3.00");
+}
+
+TEST(Health, ASitesOwnLimitsOfQ1HoldBesides) {
+  HealthLimits set = limits();
+  set.health.q1_healthy = 0.1;
+  EXPECT_EQ(verdict_on(0.09, 0.08, set).state, State::tracking);
+  EXPECT_EQ(verdict_on(0.11, 0.11, set).state, State::degraded) << "as expected, but above the site's";
+  EXPECT_EQ(verdict_on(0.09, 0.05, set).state, State::degraded) << "below the site's, but unexpected";
+  EXPECT_EQ(verdict_on(0.5, 0.5, set).state, State::degraded) << "no limit is set that says lost";
+  set.health.q1_lost = 0.2;
+  EXPECT_EQ(verdict_on(0.19, 0.19, set).state, State::degraded);
+  const HealthVerdict lost = verdict_on(0.21, 0.21, set);
+  EXPECT_EQ(lost.state, State::lost);
+  EXPECT_EQ(lost.reason, "Q1 0.210 m is above q1_lost 0.200 m");
+}
+
+TEST(Health, ASitesOwnLimitDecidesAloneWhereNothingIsExpected) {
+  HealthLimits set = limits();
+  set.health.q1_lost = 0.2;
+  EXPECT_EQ(verdict_on(0.08, std::nullopt, set).state, State::degraded) << "nothing says what is healthy";
+  EXPECT_EQ(verdict_on(0.21, std::nullopt, set).state, State::lost);
+  set.health.q1_healthy = 0.1;
+  EXPECT_EQ(verdict_on(0.08, std::nullopt, set).state, State::tracking);
+  EXPECT_EQ(verdict_on(0.11, std::nullopt, set).state, State::degraded);
 }
 
 TEST(Health, ReturnsAfterRecoverFramesGoodFramesInARow) {

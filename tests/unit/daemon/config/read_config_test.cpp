@@ -102,6 +102,8 @@ translation_epsilon = 0.002
 rotation_epsilon_deg = 0.2
 method = "point_to_point"
 [health]
+q1_ratio_healthy = 1.25
+q1_ratio_lost = 2.5
 q1_healthy = 0.2
 q1_lost = 0.3
 metric_range = 40
@@ -173,6 +175,8 @@ level = "debug"
   EXPECT_EQ(c.tracker.registration.translation_epsilon, 0.002);
   EXPECT_DOUBLE_EQ(c.tracker.registration.rotation_epsilon, 0.2 * std::numbers::pi / 180.0);
   EXPECT_EQ(c.tracker.registration.method, RegistrationMethod::point_to_point);
+  EXPECT_EQ(c.tracker.health.q1_ratio_healthy, 1.25);
+  EXPECT_EQ(c.tracker.health.q1_ratio_lost, 2.5);
   EXPECT_EQ(c.tracker.health.q1_healthy, 0.2);
   EXPECT_EQ(c.tracker.health.q1_lost, 0.3);
   EXPECT_EQ(c.tracker.health.metric_range, 40.0);
@@ -399,8 +403,10 @@ INSTANTIATE_TEST_SUITE_P(
               two_lidars("name = \"a\"\nbind = \"10.0.0.1\"\nmulticast = \"239.0.0.1\"\n",
                          "name = \"b\"\nbind = \"10.0.1.1\"\nmulticast = \"239.0.0.2\"\n"),
               ":6: lidar.port", "a port of its own"},
-        Wrong{"q1_limits", other("[health]\nq1_healthy = 0.3\n"), ":2: health.q1_healthy",
-              "is 0.3, above q1_lost = 0.25"}),
+        Wrong{"q1_limits", other("[health]\nq1_healthy = 0.3\nq1_lost = 0.25\n"), ":2: health.q1_healthy",
+              "is 0.3, above q1_lost = 0.25"},
+        Wrong{"q1_ratios", other("[health]\nq1_ratio_healthy = 3.5\n"), ":2: health.q1_ratio_healthy",
+              "is 3.5, above q1_ratio_lost = 3.0"}),
     name_of);
 
 TEST(ReadConfig, AcceptsWhatTheRulesBetweenKeysAllow) {
@@ -410,7 +416,10 @@ TEST(ReadConfig, AcceptsWhatTheRulesBetweenKeysAllow) {
            plc("heartbeat_timeout_ms = 0\nread.heartbeat = 0\n"),  // a PLC without a heartbeat register
            read("travel.type = \"int16\"\nslew.offset = 1\n"),
            other("[plc.write]\nbase = 8\n"),
+           other("[health]\nq1_healthy = 0.25\nq1_lost = 0.25\n"),
            other("[health]\nq1_healthy = 0.25\n"),
+           other("[health]\nq1_healthy = 0.25\nq1_lost = 0\n"),  // 0 is none
+           other("[health]\nq1_ratio_healthy = 3\n"),
        }) {
     EXPECT_THAT(problems(text), ::testing::IsEmpty()) << text;
   }
@@ -418,10 +427,11 @@ TEST(ReadConfig, AcceptsWhatTheRulesBetweenKeysAllow) {
 
 TEST(ReadConfig, ReportsEveryProblemInTheOrderOfTheLines) {
   const auto lines = problems(
-      "[health]\nq1_healthy = 9\nmin_matched = 1\n[plc]\nprot = 1\n[plc.read]\nslew = { offset = 1, type = "
+      "[health]\nq1_ratio_healthy = 9\nmin_matched = 1\n[plc]\nprot = 1\n[plc.read]\nslew = { offset = 1, "
+      "type = "
       "\"real\" }\n"
       "heartbeat = 4\n[[lidar]]\nname = \"\"\n[hull]\nmap = 5\n");
-  EXPECT_THAT(lines, ElementsAre(StartsWith("/site/a.toml:2: health.q1_healthy: is 9.0, above"),
+  EXPECT_THAT(lines, ElementsAre(StartsWith("/site/a.toml:2: health.q1_ratio_healthy: is 9.0, above"),
                                  StartsWith("/site/a.toml:3: health.min_matched: "),
                                  StartsWith("/site/a.toml:4: plc.host: missing"),
                                  StartsWith("/site/a.toml:5: plc.prot: unknown key"),
