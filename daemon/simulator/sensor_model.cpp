@@ -14,27 +14,10 @@ namespace {
 /// (spin axis level and 60 deg out of the boom: 2); hulltrack(1) has the figures.
 Pose bracket() { return pose_from_xyz_rpy_deg({18.4, 1.9, -1.6}, {0.0, 105.0, -30.0}); }
 
-constexpr std::string_view kVlp16Density =
-    "# Q1 measures how dense the scan is on the hull. The lasers are 2 deg apart: lines 0.6 m apart at 17 "
-    "m,\n"
-    "# 0.9 m at metric_range, more on oblique faces. A map point lies anywhere between two lines, so that a "
-    "right\n"
-    "# pose has a Q1 of about an eighth of their distance: 0.11 to 0.15 m over the working range. The limits "
-    "leave\n"
-    "# a third on top for drop-outs before health goes, and more than double before the hull counts as "
-    "lost.\n";
-constexpr std::string_view kVlp32cDensity =
-    "# Q1 measures how dense the scan is on the hull. The lasers are 0.33 deg apart in the middle of the fan "
-    "and 4\n"
-    "# to 9 deg at its lower edge: a right pose has a Q1 of 0.06 to 0.12 m over the working range. The "
-    "limits leave\n"
-    "# a third on top for drop-outs before health goes, and more than double before the hull counts as "
-    "lost.\n";
-
 std::vector<SensorTraits> make_sensors() {
   return {
-      {"velodyne_vlp16", bracket(), 1.0, 100.0, 50.0, 0.02, 0.0030, 0.0015, 0.20, 0.35, kVlp16Density},
-      {"velodyne_vlp32c", bracket(), 1.0, 120.0, 90.0, 0.02, 0.0030, 0.0015, 0.16, 0.30, kVlp32cDensity},
+      {"velodyne_vlp16", bracket(), 1.0, 100.0, 50.0, 0.02, 0.0030, 0.0015},
+      {"velodyne_vlp32c", bracket(), 1.0, 120.0, 90.0, 0.02, 0.0030, 0.0015},
   };
 }
 

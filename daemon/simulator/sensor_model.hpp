@@ -28,9 +28,6 @@ struct SensorTraits {
   double range_sigma;         // m
   double divergence_azimuth;  // full width of the beam, rad
   double divergence_elevation;
-  // Limits of Q1 that suit the density of this sensor's scans on a ship 15 to 20 m below, and why.
-  double q1_healthy, q1_lost;  // m
-  std::string_view q1_reason;  // comment lines for the configuration
 };
 
 /// The models that can be simulated.

@@ -73,12 +73,7 @@ void put_hull(std::string& text, const HullConfig& hull) {
       "# Nobody moors her farther along the quay than half a hatch pitch from her place in the map; the "
       "fenders\n"
       "# and her lines leave her 2 m; high water lifts her by 3 m, cargo and low water sink her by 9 m.\n";
-  put_box(text, "envelope", hull.envelope, "\n");
-}
-
-void put_health(std::string& text, const SensorTraits& sensor) {
-  text += "[health]\n" + std::string(sensor.q1_reason);
-  put(text, "q1_healthy = %.2f\nq1_lost = %.2f\n", sensor.q1_healthy, sensor.q1_lost);
+  put_box(text, "envelope", hull.envelope, "");
 }
 
 }  // namespace
@@ -94,7 +89,6 @@ std::string site_config(const SimulatedBerth& berth, const SiteAddresses& addres
   put_machine(text);
   put_lidar(text, berth.lidar_config(), addresses.lidar_port);
   put_hull(text, berth.hull_config());
-  put_health(text, berth.sensor());
   return text;
 }
 
