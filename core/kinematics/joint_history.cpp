@@ -50,11 +50,13 @@ JointHistory::Answer JointHistory::at(MeasurementTime t) const {
 
 std::optional<JointHistory::Motion> JointHistory::motion_at(MeasurementTime t) const {
   const Answer answer = at(t);
-  const auto after =
-      std::upper_bound(samples_.begin(), samples_.end(), t,
-                       [](MeasurementTime time, const JointSample& s) { return time < s.time; });
-  if (answer.lookup != Lookup::ok || after == samples_.begin() || after == samples_.end()) {
+  if (answer.lookup != Lookup::ok || samples_.size() < 2) {
     return std::nullopt;
+  }
+  auto after = std::upper_bound(samples_.begin(), samples_.end(), t,
+                                [](MeasurementTime time, const JointSample& s) { return time < s.time; });
+  if (after == samples_.end()) {
+    --after;
   }
   const JointSample& a = *std::prev(after);
   const JointSample& b = *after;

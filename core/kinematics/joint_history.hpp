@@ -35,7 +35,8 @@ class JointHistory {
 
   [[nodiscard]] Answer at(MeasurementTime t) const;
 
-  /// Between the two samples around t; nothing where at() has no answer.
+  /// Between the two samples around t (from a sample on; at the newest one, up to it); nothing where at()
+  /// has no answer, nor of a single sample.
   struct Motion {
     Joints joints;        // at t
     Joints rate;          // a second

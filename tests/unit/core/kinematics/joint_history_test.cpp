@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 namespace hulltrack {
 namespace {
 
@@ -43,6 +45,54 @@ TEST(JointHistory, ABracketSpansAtMost250Milliseconds) {
       << "a gap between two times that both have an answer";
   EXPECT_EQ(history.covers(ms(10), ms(502)), Lookup::after_newest);
   EXPECT_EQ(history.covers(ms(-1), ms(250)), Lookup::before_oldest);
+}
+
+void expect_rate(const JointHistory::Motion& motion, const Joints& rate, Nanoseconds spacing) {
+  EXPECT_NEAR(motion.rate.d_x, rate.d_x, 1e-9);
+  EXPECT_NEAR(motion.rate.theta_r, rate.theta_r, 1e-9);
+  EXPECT_NEAR(motion.rate.theta_p, rate.theta_p, 1e-9);
+  EXPECT_EQ(motion.spacing, spacing);
+}
+
+TEST(JointHistory, MotionIsThatBetweenTheSamplesAround) {
+  JointHistory history;
+  history.add({ms(100), {1.0, 0.1, -0.2}});
+  history.add({ms(120), {2.0, 0.3, -0.4}});
+  history.add({ms(160), {2.0, 0.1, 0.0}});
+  const auto first = history.motion_at(ms(105));
+  ASSERT_TRUE(first);
+  EXPECT_DOUBLE_EQ(first->joints.d_x, 1.25);
+  EXPECT_DOUBLE_EQ(first->joints.theta_r, 0.15);
+  EXPECT_DOUBLE_EQ(first->joints.theta_p, -0.25);
+  expect_rate(*first, {50.0, 10.0, -10.0}, std::chrono::milliseconds(20));
+  const auto second = history.motion_at(ms(159));
+  ASSERT_TRUE(second);
+  expect_rate(*second, {0.0, -5.0, 10.0}, std::chrono::milliseconds(40));
+}
+
+TEST(JointHistory, MotionAtASampleIsThatAfterItAndAtTheNewestThatBefore) {
+  JointHistory history;
+  history.add({ms(100), {1.0, 0.0, 0.0}});
+  history.add({ms(120), {2.0, 0.0, 0.0}});
+  history.add({ms(160), {1.0, 0.0, 0.0}});
+  for (const auto& [t, d_x, rate, spacing] :
+       {std::tuple{100, 1.0, 50.0, 20}, {120, 2.0, -25.0, 40}, {160, 1.0, -25.0, 40}}) {
+    const auto motion = history.motion_at(ms(t));
+    ASSERT_TRUE(motion) << t;
+    EXPECT_EQ(motion->joints.d_x, d_x) << t;
+    expect_rate(*motion, {rate, 0.0, 0.0}, std::chrono::milliseconds(spacing));
+  }
+}
+
+TEST(JointHistory, ThereIsNoMotionWhereThereIsNoAnswer) {
+  JointHistory history;
+  EXPECT_FALSE(history.motion_at(ms(0)));
+  history.add({ms(0), {1.0, 0.0, 0.0}});
+  EXPECT_FALSE(history.motion_at(ms(0))) << "one sample does not tell how it moves";
+  history.add({ms(251), {2.0, 0.0, 0.0}});
+  for (const int t : {-1, 100, 252}) {
+    EXPECT_FALSE(history.motion_at(ms(t))) << t;
+  }
 }
 
 TEST(JointHistory, RefusesTimeThatDoesNotAdvance) {
