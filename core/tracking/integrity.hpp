@@ -69,10 +69,9 @@ struct IntegrityReport {
 };
 
 struct IntegrityFinding {
-  Faults faults = 0;        // contradicted, unconstrained
-  std::string reason;       // with figures; empty without a fault
-  bool other_ship = false;  // the pose is right as far as one can tell, the ship is not
-  bool undecided = false;   // too early to say whether it is the ship of the map
+  Faults faults = 0;       // contradicted, unconstrained
+  std::string reason;      // with figures; empty without a fault
+  bool undecided = false;  // too early to say whether it is the ship of the map
 };
 
 /// Robust (Geman-McClure) Gauss-Newton over fixed observations, linearised about their centroid; the answer

@@ -103,7 +103,6 @@ IntegrityFinding judge_integrity(const IntegrityReport& report) {
   const PatchReport& patches = report.patches;
   if (patches.displaced + patches.displaced_rims >= kFewestDisplaced) {
     finding.faults = fault::contradicted;
-    finding.other_ship = true;
     finding.reason =
         format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere, by %.2f m",
                     patches.displaced, patches.solid, patches.median_offset);
