@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "tests/support/analytic_ship.hpp"
 
 namespace hulltrack {
@@ -45,12 +47,18 @@ class Track {
     }
     return result;
   }
+  /// Not one return for so many frames.
+  void blind(int frames) {
+    for (int i = 0; i < frames; ++i) {
+      EXPECT_FALSE(step(nullptr, {.drop = 1.1}).health);
+    }
+  }
   const AnalyticShip& ship() const { return ship_; }
 
  private:
   AnalyticShip ship_ = AnalyticShip::bulk_carrier();
   HullTracker tracker_;
-  JointHistory joints_ = testing::joints_at_rest(30.0);
+  JointHistory joints_ = testing::joints_at_rest(100.0);
   std::uint32_t frame_ = 0;
 };
 
@@ -116,6 +124,49 @@ TEST(HullTracker, FindsAHullThatLiesElsewhereAndIsNeverHealthyOffIt) {
     // Seen from a metre farther aside, pieces of this ship's coamings are taken for another ship's: found at
     // once, but not believed.
     EXPECT_TRUE(believed || t.y() != 0.0) << t.transpose() << ", yaw " << yaw;
+  }
+}
+
+TEST(HullTracker, FindsAHullThatMovedByMetresUnseenAndIsNeverHealthyOffIt) {
+  constexpr int kFramesToFind = 20;  // 2 s
+  for (const auto& [t, yaw, seconds, believable] :
+       {std::tuple{Eigen::Vector3d(-4, 0, 0.5), 0.0, 30, true},
+        {Eigen::Vector3d(-11, 0, -1), 0.0, 45, true},
+        {Eigen::Vector3d(-12, 0, 1), 0.5, 60, true},
+        // From here the LiDAR sees this ship so that pieces of it are taken for another ship's.
+        {Eigen::Vector3d(6, 0, 0), 0.0, 30, false},
+        {Eigen::Vector3d(14, 0, 2), 0.5, 60, false},
+        {Eigen::Vector3d(-4, 1.5, 0.5), -0.5, 30, false}}) {
+    Track track;
+    ASSERT_TRUE(track.settle(Pose::Identity()).health);
+    track.blind(10 * seconds);
+    const Pose T_W_H = displaced(t, {0, 0, yaw});
+    bool found = false;
+    bool believed = false;
+    for (int i = 0; i < kFramesToFind; ++i) {
+      const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
+      const bool right = error(result, T_W_H) < 0.05 && turn_error(result, T_W_H) < radians(0.1);
+      found = found || right;
+      believed = believed || result.health;
+      EXPECT_TRUE(right || !result.health)
+          << t.transpose() << ", frame " << i << ": error " << error(result, T_W_H);
+    }
+    EXPECT_TRUE(found) << t.transpose();
+    EXPECT_TRUE(believed || !believable) << t.transpose();
+  }
+}
+
+TEST(HullTracker, AShipThatLeftUnseenIsNeverHealthyAgain) {
+  const AnalyticShip other = AnalyticShip::other_carrier();
+  for (const AnalyticShip* left : {static_cast<const AnalyticShip*>(nullptr), &other}) {
+    Track track;
+    ASSERT_TRUE(track.settle(Pose::Identity()).health);
+    track.blind(400);
+    for (int i = 0; i < 50; ++i) {
+      const TrackResult result = track.step(left, {});
+      EXPECT_FALSE(result.health) << i;
+      EXPECT_FALSE(result.reason.empty());
+    }
   }
 }
 
