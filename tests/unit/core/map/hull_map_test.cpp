@@ -101,6 +101,42 @@ TEST(HullMap, SameCloudGivesTheSameSubset) {
   EXPECT_EQ(one.subset_H(), two.subset_H());
 }
 
+TEST(HullMap, LengthIsThatOfTheMappedHullAlongX) {
+  EXPECT_NEAR(HullMap(box_cloud(0.1, 0.0, 1)).length(), 2.0 * kHalf.x(), 0.1);
+  EXPECT_GT(HullMap({Point(3.0F, 4.0F, 5.0F)}).length(), 0.0) << "a map of one point is a map";
+}
+
+TEST(HullMap, PlanesLieWhereTheMapDoes) {
+  const HullMap map(box_cloud(0.07, 0.004, 1));
+  ASSERT_GT(map.planes().planes().size(), 1000U);
+  for (const PlaneMap::Plane& plane : map.planes().planes()) {
+    EXPECT_TRUE(map.tree().nearest(plane.centre_H, 0.1F)) << plane.centre_H.transpose();
+  }
+}
+
+TEST(HullMap, AllOfTheMapIsOccupiedAndNothingElse) {
+  const HullMap map(box_cloud(0.07, 0.004, 1));
+  std::vector<OccupancyGrid::Index> cells;
+  for (std::size_t i = 0; i < map.cloud_H().size(); i += 97) {
+    cells.push_back(map.occupancy().cell_of(map.cloud_H()[i]));
+  }
+  const auto worth = [&](int x, int y, int z) {
+    std::array<std::uint16_t, OccupancyGrid::kHeights> sums{};
+    map.occupancy().correlate(cells, x, y, sums);
+    return std::size_t{sums[static_cast<std::size_t>(OccupancyGrid::kUp + z)]};
+  };
+  EXPECT_GT(worth(0, 0, 0), 195 * cells.size() / 100);
+  EXPECT_EQ(worth(0, 0, 15), 0U) << "above the box, which is 6 m high";
+  EXPECT_EQ(worth(40, 0, 0), 0U) << "beside it";
+  EXPECT_EQ(worth(0, -25, 0), 0U);
+}
+
+TEST(HullMap, AShipWithoutAHatchHasNoRims) {
+  const HullMap map(box_cloud(0.1, 0.004, 1));
+  EXPECT_TRUE(map.rims().empty());
+  EXPECT_EQ(map.probes_H(), map.subset_H());
+}
+
 /// Map densities and noise that surveys have: the surfels are the same box every time.
 struct Survey {
   double spacing, noise;

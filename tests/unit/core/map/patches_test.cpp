@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/geometry/box.hpp"
 #include "core/map/hull_map.hpp"
 
 namespace hulltrack {
@@ -131,6 +132,47 @@ TEST_F(Hatch, RimsLieOnTheCoamingsMiddleAndKnowItsEdges) {
   }
   for (const int points : sides) {
     EXPECT_GT(points, 10);
+  }
+}
+
+TEST_F(Hatch, APatchFacesOneWayAndIsNotLargerThanATile) {
+  std::vector<int> members(map().patches(), 0);
+  std::vector<SurfaceClass> faces(map().patches(), SurfaceClass::other);
+  std::vector<bool> of_rim(map().patches(), false);
+  std::vector<Box> boxes(map().patches());
+  const auto add = [&](std::uint32_t patch, const Point& p_H) {
+    ASSERT_LT(patch, map().patches());
+    Box& box = boxes[patch];
+    box = members[patch]++ == 0 ? Box{p_H, p_H} : Box{box.min.cwiseMin(p_H), box.max.cwiseMax(p_H)};
+  };
+  for (const RimPoint& rim : map().rims()) {
+    if (rim.patch != Surfel::kNoPatch) {
+      add(rim.patch, rim.p_H);
+      of_rim[rim.patch] = true;
+    }
+  }
+  for (std::size_t i = 0; i < map().surfels().size(); ++i) {
+    const Surfel& surfel = map().surfels()[i];
+    if (surfel.patch != Surfel::kNoPatch) {
+      EXPECT_TRUE(surfel.planar);
+      EXPECT_FALSE(of_rim[surfel.patch]) << "a rim's points are finer than surfels and apart from them";
+      EXPECT_TRUE(members[surfel.patch] == 0 || faces[surfel.patch] == surfel.surface);
+      faces[surfel.patch] = surfel.surface;
+      add(surfel.patch, map().subset_H()[i]);
+    }
+  }
+  EXPECT_GT(map().patches(), 20U);
+  for (std::uint32_t patch = 0; patch < map().patches(); ++patch) {
+    EXPECT_LE((boxes[patch].max - boxes[patch].min).maxCoeff(), kTile + 0.01F) << patch;
+  }
+}
+
+TEST_F(Hatch, ProbesAreTheSubsetThenTheRims) {
+  const std::size_t subset = map().subset_H().size();
+  ASSERT_EQ(map().probes_H().size(), subset + map().rims().size());
+  ASSERT_FALSE(map().rims().empty());
+  for (std::size_t i = 0; i < map().probes_H().size(); ++i) {
+    EXPECT_EQ(map().probes_H()[i], i < subset ? map().subset_H()[i] : map().rims()[i - subset].p_H) << i;
   }
 }
 
