@@ -88,6 +88,68 @@ TEST_F(OnePatch, DisplacedOnceIsRememberedUntilSeenInPlace) {
   EXPECT_EQ(evidence.report().displaced, 0U) << "what was seen long ago is forgotten as new returns come";
 }
 
+class OneRim : public OnePatch {
+ protected:
+  /// A frame of rays over a coaming's top that stands `aside` of its place across, at its mapped height.
+  void see_strip(float aside, int n) {
+    evidence.begin_frame();
+    see(0.0, n / 2);
+    std::uniform_real_distribution<float> across(-StripEvidence::kAside, StripEvidence::kAside);
+    std::normal_distribution<float> blur(0.0F, 0.015F);
+    for (int i = 0; i < n; ++i) {
+      const float s = across(random);
+      const float hit = s + blur(random) - aside;
+      evidence.add_across(rim, s, hit > rim.begin && hit < rim.end);
+    }
+  }
+
+  RimPoint rim{Point::Zero(), Point::UnitY(), Point::UnitY(), -0.15F, 0.15F, 0};
+};
+
+TEST_F(OneRim, AsideByADecimetreIsADisplacedRimThoughItsHeightIsRight) {
+  see_strip(0.0F, 300);
+  PatchReport report = evidence.report();
+  EXPECT_EQ(report.displaced, 0U);
+  EXPECT_EQ(report.displaced_rims, 0U);
+  EXPECT_EQ(report.solid, 1U);
+  EXPECT_TRUE(evidence.judge_strip(0).in_place());
+
+  evidence.reset(1);
+  EXPECT_FALSE(evidence.judge_strip(0).known) << "forgotten";
+  see_strip(0.12F, 300);
+  report = evidence.report();
+  EXPECT_EQ(state(), PatchState::in_place);
+  EXPECT_EQ(report.displaced, 1U);
+  EXPECT_EQ(report.displaced_rims, 1U);
+  EXPECT_EQ(report.solid, 1U);
+  EXPECT_NEAR(report.median_offset, 0.12, 0.02);
+  EXPECT_NEAR(evidence.judge_strip(0).shift, 0.12, 0.02);
+}
+
+TEST_F(OneRim, AsideOnceIsRememberedUntilSeenInPlace) {
+  see_strip(-0.12F, 300);
+  EXPECT_EQ(evidence.report().displaced_rims, 1U);
+  evidence.begin_frame();  // out of sight
+  EXPECT_EQ(evidence.report().displaced_rims, 1U);
+  for (int frame = 0; frame < 30; ++frame) {
+    see_strip(0.0F, 100);
+    (void)evidence.report();
+  }
+  EXPECT_EQ(evidence.report().displaced_rims, 0U);
+}
+
+TEST_F(OnePatch, ASurfaceThatIsDisplacedAndNoRimIsCountedOnce) {
+  evidence.begin_frame();
+  see(0.15, 60);
+  const PatchReport report = evidence.report();
+  EXPECT_EQ(report.in_view, 1U);
+  EXPECT_EQ(report.judged, 1U);
+  EXPECT_EQ(report.solid, 1U);
+  EXPECT_EQ(report.displaced, 1U);
+  EXPECT_EQ(report.displaced_rims, 0U);
+  EXPECT_NEAR(report.median_offset, 0.15, 0.02);
+}
+
 TEST(PatchEvidence, TheShipIsDecidedOnWhenMostOfWhatIsInViewWasJudgedInSeveralFrames) {
   PatchEvidence evidence;
   evidence.reset(10);
