@@ -10,6 +10,7 @@ namespace {
 constexpr float kBesides = 0.3F;  // m in the plane: as far as a surfel is known to be flat
 constexpr float kAround = 0.2F;   // m in the plane: half a subset voxel; returns in it are the surfel's own
 constexpr float kSameSurface = 0.06F;  // m: three sigma of a return beside the nearest one
+constexpr float kHidden = 0.1F;        // m before a surfel: from there on something else was seen
 constexpr float kGrazing = 0.1F;       // sine of 6 deg: below it a range says little about the plane
 constexpr float kStepGate = 0.5F;      // m: observations farther off the plane belong to something else
 constexpr float kOnRim = 0.1F;         // m across: what is surely coaming around a rim point
@@ -92,6 +93,19 @@ void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
   }
 }
 
+/// Whether another part of the map hides a surfel from the sensor within the tolerance that visibility
+/// leaves: a deck the ship's side below its edge.
+bool is_behind_another(const HullMap& map, const Point& p_H, const Point& n_H, const Point& sensor_H) {
+  const Point to_sensor = (sensor_H - p_H).normalized();
+  for (float before = kHidden; before <= Integrity::kBehind; before += kHidden) {
+    const auto near = map.tree().nearest(p_H + before * to_sensor, kHidden);
+    if (near && std::abs(n_H.dot(map.cloud_H()[near->index] - p_H)) > kSameSurface) {
+      return true;
+    }
+  }
+  return false;
+}
+
 const RayEnd* nearest_ray(const std::vector<RayEnd>& rays) {
   const auto nearest = std::min_element(
       rays.begin(), rays.end(), [](const RayEnd& a, const RayEnd& b) { return a.besides2 < b.besides2; });
@@ -145,6 +159,11 @@ void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, co
   collect_rays(view, point.p_L, n_L, rays_);
   const RayEnd* nearest = nearest_ray(rays_);
   if (nearest == nullptr) {
+    return;
+  }
+  if (nearest->depth < -kHidden &&
+      is_behind_another(map, map.subset_H()[point.index], surfel.normal_H,
+                        (T_W_H.inverse() * view.T_W_L().translation()).cast<float>())) {
     return;
   }
   const bool confirmed = std::abs(nearest->offset) <= kPlaneGate;

@@ -5,7 +5,7 @@
 // along the sensor's own rays: the ray that would meet its plane nearest to it, where did it really end?
 //   confirmed     on the plane, within kPlaneGate
 //   contradicted  off the plane; behind it by more than kBehind: seen through
-//   hidden        in front of it by more than kBehind: says nothing
+//   hidden        in front of it by more than kBehind, or by less where the map has something: says nothing
 // From these come the share of confirmed surfels for each class of surfaces, the share seen through, and a
 // robust plane-to-point least squares step: by how much is the pose off, and how sure is that?
 // The answers can only take health away. Frames W, H, L; metres, radians.

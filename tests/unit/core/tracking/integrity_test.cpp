@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace hulltrack {
 namespace {
@@ -31,6 +32,8 @@ Cloud corner() {
 
 class IntegrityRun : public testing::Test {
  protected:
+  explicit IntegrityRun(Cloud cloud = corner()) : map(std::move(cloud)) {}
+
   /// Where the ray to a surfel ends: its place times the factor; nothing for 0.
   using Ray = std::function<float(const Surfel&, const Point&)>;
 
@@ -62,7 +65,7 @@ class IntegrityRun : public testing::Test {
     return report.surfaces[static_cast<std::size_t>(surface)];
   }
 
-  const HullMap map{corner()};
+  const HullMap map;
   const Eigen::Vector3d reference{3.0, 3.0, -3.0};
 };
 
@@ -120,6 +123,41 @@ TEST_F(IntegrityRun, WhatIsHiddenSaysNothing) {
   });
   EXPECT_EQ(count(report, SurfaceClass::horizontal).expected, 0U);
   EXPECT_EQ(report.seen_through, 0U);
+  EXPECT_EQ(report.expected, report.confirmed);
+}
+
+TEST_F(IntegrityRun, AWallThatStandsNearerIsContradicted) {
+  const IntegrityReport report = look([](const Surfel& surfel, const Point&) {
+    return surfel.surface == SurfaceClass::longitudinal ? 6.7F / 7.0F : 1.0F;  // by 0.3 m
+  });
+  EXPECT_EQ(count(report, SurfaceClass::longitudinal).expected, planar(SurfaceClass::longitudinal));
+  EXPECT_EQ(count(report, SurfaceClass::longitudinal).confirmed, 0U);
+}
+
+/// A deck 5.8 m below the sensor and the ship's side under its far edge.
+Cloud deck_and_side() {
+  Cloud cloud;
+  for (float x = -3.0F; x < 3.0F; x += 0.05F) {
+    for (float y = -2.0F; y < 4.0F; y += 0.05F) {
+      cloud.push_back({x, y, -5.8F});
+    }
+    for (float z = -8.8F; z < -5.8F; z += 0.05F) {
+      cloud.push_back({x, 4.0F, z});
+    }
+  }
+  return cloud;
+}
+
+class IntegrityOverADeck : public IntegrityRun {
+ protected:
+  IntegrityOverADeck() : IntegrityRun(deck_and_side()) {}
+};
+
+TEST_F(IntegrityOverADeck, WhatTheShipItselfHidesSaysNothingHoweverLittleBelowItLies) {
+  const IntegrityReport report = look([](const Surfel&, const Point& p) { return 5.8F / -p.z(); });
+  ASSERT_GT(planar(SurfaceClass::longitudinal), 40U);
+  EXPECT_EQ(count(report, SurfaceClass::longitudinal).expected, 0U);
+  EXPECT_EQ(count(report, SurfaceClass::horizontal).confirmed, planar(SurfaceClass::horizontal));
   EXPECT_EQ(report.expected, report.confirmed);
 }
 
