@@ -25,7 +25,7 @@ void add(Boxes& boxes, float x0, float x1, float y0, float y1, float z0, float z
 }
 
 void add_hold(Boxes& hull, float x0, float x1, float y0, float y1) {
-  constexpr float kWall = 0.15F;
+  constexpr float kWall = 0.35F;  // with its rest bar
   constexpr float kTop = kDeck + 1.2F;
   add(hull, x0 - kWall, x0, y0 - kWall, y1 + kWall, kDeck, kTop);  // coaming
   add(hull, x1, x1 + kWall, y0 - kWall, y1 + kWall, kDeck, kTop);
@@ -33,9 +33,10 @@ void add_hold(Boxes& hull, float x0, float x1, float y0, float y1) {
   add(hull, x0, x1, y1, y1 + kWall, kDeck, kTop);
   add(hull, x0, x1, y0, y1, kDeck - 9.5F, kDeck - 9.0F);  // tank top
   for (float x = x0 + 1.0F; x < x1; x += 2.0F) {          // coaming stays on both long sides
-    add(hull, x, x + 0.1F, y0 - 0.7F, y0 - kWall, kDeck, kDeck + 0.9F);
-    add(hull, x, x + 0.1F, y1 + kWall, y1 + 0.7F, kDeck, kDeck + 0.9F);
+    add(hull, x, x + 0.1F, y0 - 0.9F, y0 - kWall, kDeck, kDeck + 0.9F);
+    add(hull, x, x + 0.1F, y1 + kWall, y1 + 0.9F, kDeck, kDeck + 0.9F);
   }
+  add(hull, x1 + 0.5F, x1 + 1.2F, y0, y1, kDeck, kTop + 1.5F);  // covers, folded
 }
 
 Boxes make_hull() {
@@ -44,15 +45,22 @@ Boxes make_hull() {
   add(hull, -60.0F, 60.0F, 0.0F, 4.0F, kBottom, kDeck);  // side decks above the sheer sides
   add(hull, -60.0F, 60.0F, 16.0F, 20.0F, kBottom, kDeck);
   add(hull, -60.0F, -40.0F, 4.0F, 16.0F, kBottom, kDeck);  // below the superstructure
+  // No two holds and cross decks are of one length: a scan fits one place along the quay.
+  constexpr std::array<float, 5> kHolds{12.0F, 14.5F, 14.0F, 15.0F, 11.0F};
+  constexpr std::array<float, 5> kDecks{4.5F, 5.0F, 4.5F, 4.0F, 15.5F};
   float x = -40.0F;
-  for (int hold = 0; hold < 5; ++hold) {
-    add_hold(hull, x, x + 14.0F, 4.0F, 16.0F);
-    const float next = hold == 4 ? 60.0F : x + 18.5F;
-    add(hull, x + 14.0F, next, 4.0F, 16.0F, kBottom, kDeck);           // cross deck
-    add(hull, x + 15.2F, x + 16.8F, 8.0F, 9.5F, kDeck, kDeck + 2.2F);  // mast house
-    add(hull, x + 15.0F, x + 15.4F, 5.0F, 5.4F, kDeck, kDeck + 0.8F);  // ventilators
-    add(hull, x + 15.0F, x + 15.4F, 14.5F, 14.9F, kDeck, kDeck + 0.8F);
-    x += 18.5F;
+  for (std::size_t i = 0; i < kHolds.size(); ++i) {
+    add_hold(hull, x, x + kHolds[i], 4.0F, 16.0F);
+    x += kHolds[i];
+    add(hull, x, x + kDecks[i], 4.0F, 16.0F, kBottom, kDeck);  // cross deck
+    if (i % 2 == 0) {
+      add(hull, x + 1.7F, x + 3.7F, 9.0F, 11.0F, kDeck, kDeck + 9.0F);  // crane
+    } else {
+      add(hull, x + 1.7F, x + 3.3F, 8.0F, 9.5F, kDeck, kDeck + 2.2F);  // mast house
+    }
+    add(hull, x + 1.5F, x + 1.9F, 5.0F, 5.4F, kDeck, kDeck + 0.8F);  // ventilators
+    add(hull, x + 1.5F, x + 1.9F, 14.5F, 14.9F, kDeck, kDeck + 0.8F);
+    x += kDecks[i];
   }
   add(hull, -58.0F, -44.0F, 1.5F, 18.5F, kDeck, kDeck + 3.0F);  // superstructure, storey by storey
   add(hull, -57.0F, -45.0F, 2.5F, 17.5F, kDeck + 3.0F, kDeck + 6.0F);
@@ -79,8 +87,8 @@ Boxes make_clutter() {
   for (int step = 0; step < 6; ++step) {  // cargo heaped in two of the holds
     const float s = 0.9F * static_cast<float>(step);
     const float z = kDeck - 9.0F + 1.1F * static_cast<float>(step);
-    add(clutter, -20.5F + s, -8.5F - s, 5.0F + s, 15.0F - s, z, z + 1.1F);
-    add(clutter, 16.5F + s, 28.5F - s, 5.0F + s, 15.0F - s, z, z + 1.1F);
+    add(clutter, -22.0F + s, -10.5F - s, 5.0F + s, 15.0F - s, z, z + 1.1F);
+    add(clutter, 16.0F + s, 28.0F - s, 5.0F + s, 15.0F - s, z, z + 1.1F);
   }
   return clutter;
 }

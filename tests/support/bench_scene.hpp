@@ -1,10 +1,10 @@
 // A bulk carrier's map and the scans that a loader takes of it, at full size: the benchmarks' case.
 //
-// Everything is made of axis-aligned boxes and ray-cast exactly. The hull (120 x 20 m, five open holds,
-// superstructure, bulwark, fittings) is surveyed from the loader's positions: map points are on a 5 cm grid,
-// where no survey ray reaches there is no point. Scans see hull and clutter: quay, cargo, chute, dust.
-// Frames: H = W (the hull has not moved), metres; x along the ship, y away from the quay, z up.
-// Deterministic for a seed. Cost: some seconds.
+// Everything is made of axis-aligned boxes and ray-cast exactly. The hull (120 x 20 m, five open holds with
+// coamings and folded covers, superstructure, cranes, bulwark, fittings) is surveyed from the loader's
+// positions: map points are on a 5 cm grid, where no survey ray reaches there is no point. Scans see hull and
+// clutter: quay, cargo, chute, dust. Frames: H = W (the hull has not moved), metres; x along the ship, y away
+// from the quay, z up. Deterministic for a seed. Cost: some seconds.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "tests/bench/frame_recording.hpp"
+#include "tests/support/frame_recording.hpp"
 
 #include <random>
 
@@ -92,6 +92,13 @@ FrameRecording record_frames(int frames, std::uint32_t seed) {
     recording.joints.add({kStart + t, joints_at(t)});
   }
   return recording;
+}
+
+Config config_for(const FrameRecording& recording) {
+  Config config;
+  config.lidars = {recording.lidar};
+  config.framing = recording.framing;
+  return config;
 }
 
 }  // namespace hulltrack::bench

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "core/kinematics/joint_history.hpp"
-#include "lidar_drivers/lidar_config.hpp"
+#include "daemon/config/config.hpp"
+#include "lidar_drivers/scan_builder.hpp"
 #include "lidar_drivers/velodyne/velodyne_format.hpp"
 
 namespace hulltrack::bench {
@@ -32,5 +33,21 @@ struct FrameRecording {
 
 /// Enough datagrams for `frames` whole frames.
 [[nodiscard]] FrameRecording record_frames(int frames, std::uint32_t seed);
+
+/// All defaults but for the recording's LiDAR.
+[[nodiscard]] Config config_for(const FrameRecording& recording);
+
+/// Datagrams in, on_scan(scan) for every frame.
+template <typename OnScan>
+void play(const FrameRecording& recording, OnScan&& on_scan) {
+  ScanBuilder builder = ScanBuilder::create({recording.lidar}, recording.framing).value();
+  Scan scan;
+  for (const RecordedDatagram& datagram : recording.datagrams) {
+    builder.add(0, {.bytes = datagram.bytes, .received = datagram.received});
+    if (builder.take(scan)) {
+      on_scan(scan);
+    }
+  }
+}
 
 }  // namespace hulltrack::bench

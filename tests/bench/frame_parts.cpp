@@ -1,0 +1,136 @@
+#include "tests/bench/frame_parts.hpp"
+
+#include <limits>
+
+#include "core/filter/voxel_filter.hpp"
+#include "core/geometry/box.hpp"
+#include "core/map/surfels.hpp"
+#include "core/tracking/integrity.hpp"
+#include "core/tracking/pose_covariance.hpp"
+#include "core/tracking/pose_finder.hpp"
+#include "core/tracking/visibility.hpp"
+#include "daemon/app/frame_pipeline.hpp"
+#include "tests/bench/bench_process.hpp"
+#include "tests/bench/stopwatch.hpp"
+
+namespace hulltrack::bench {
+namespace {
+
+/// As if the frames so far had shown the hull at T_W_H.
+void follow(const Pose& T_W_H, MeasurementTime time, HealthMemory& memory) {
+  const Eigen::Vector3d reference_H = HullConfig{}.reference_point;
+  const Eigen::Vector3d displacement = T_W_H * reference_H - reference_H;
+  memory.unique = true;
+  memory.followed = {time, displacement, T_W_H.linear()};
+  memory.motion.add(time, displacement, rpy_from_rotation(T_W_H.linear()));
+}
+
+}  // namespace
+
+void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts& parts) {
+  const Config config = config_for(recording);
+  const Eigen::Vector3d& reference_H = config.tracker.hull.reference_point;
+  const ScanFilter filter(config.machine, sensor_configs(config.lidars), std::nullopt);
+  PoseFinder finder(config.tracker, map);
+  PointToPlaneIcp icp({}, {reference_H.x(), map.length()});
+  Visibility visibility(config.tracker.health.metric_range);
+  Integrity integrity;
+  HealthMemory memory;
+  FilteredScan filtered;
+  std::vector<ScanView> views(1);
+  std::vector<VisiblePoint> visible;
+  Cloud measured_W;
+  std::vector<Neighbour> nearest;
+  std::vector<double> distances;
+  play(recording, [&](const Scan& scan) {
+    const MeasurementTime time = scan.mid_time();
+    if (!memory.followed) {
+      follow(recording.T_W_H, time, memory);
+      finder.judged(memory, false);
+    }
+    Stopwatch watch;
+    const auto done = [&](const char* part) {
+      parts[part].push_back(watch.lap().cpu);
+      watch.lap();
+    };
+    filter.run(scan, recording.joints, {}, filtered);
+    done("filter");
+    const PlaneIcpResult found = finder.find(filtered.hull_W, time, memory);
+    done("register");
+    const PlaneIcpResult again =
+        icp.align(finder.thinned_W(), map.planes(), found.icp.T_target_source, finder.bend());
+    done("(one alignment from its own answer)");
+    require(again.icp.converged, "an alignment does not hold");
+    const Pose T_W_H = found.icp.T_target_source.inverse();
+    const Joints joints = recording.joints.at(time).joints;
+    views[0].rebuild(filtered.returns_W[0], lidar_pose(config.machine, joints, recording.lidar.mount));
+    done("scan view");
+    visibility.run(map, map.probes_H(), T_W_H, views, filter.sensors(), visible);
+    done("visibility");
+    IntegrityReport report = integrity.run(map, visible, T_W_H, views);
+    done("integrity");
+    const KdTree tree(filtered.hull_W, TreeUse::one_batch);
+    done("scan tree");
+    measured_W.clear();
+    for (const VisiblePoint& point : visible) {
+      if (point.index < map.subset_H().size()) {
+        measured_W.push_back((T_W_H * map.subset_H()[point.index].cast<double>()).cast<float>());
+      }
+    }
+    nearest.resize(measured_W.size());
+    tree.nearest(measured_W, std::numeric_limits<float>::infinity(), nearest);
+    distances.clear();
+    for (const Neighbour& neighbour : nearest) {
+      distances.push_back(std::sqrt(static_cast<double>(neighbour.squared_distance)));
+    }
+    require(summarise_distances(distances).valid, "no metrics");
+    done("metrics");
+    report.step.solved = found.covariance.valid;
+    report.step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
+    integrity.weigh(map, T_W_H, T_W_H * reference_H, report);
+    done("patches");
+    require(!finder.rival(found.icp.T_target_source), "there is a rival");
+    done("challenge");
+    follow(T_W_H, time, memory);
+    finder.judged(memory, false);
+    finder.learn(time, found);
+    done("learn");
+  });
+}
+
+void time_map_parts(const Cloud& cloud_H, Parts& parts) {
+  Stopwatch watch;
+  const auto done = [&](const char* part) {
+    parts[part].push_back(watch.lap().cpu);
+    watch.lap();
+  };
+  const auto thinned = [&](float voxel) {
+    Cloud out;
+    VoxelFilter(voxel).filter(cloud_H, out);
+    return out;
+  };
+  const KdTree tree(cloud_H);
+  done("tree");
+  const Cloud subset_H = thinned(HullMap::kSubsetVoxel);
+  done("subset");
+  std::vector<Surfel> surfels = compute_surfels(subset_H, cloud_H, tree);
+  done("surfels");
+  const PointBlocks occluders_H(thinned(HullMap::kOccluderVoxel));
+  done("occluders");
+  const Relief relief(cloud_H);
+  done("relief");
+  const PlaneMap planes(cloud_H, tree, relief);
+  done("planes");
+  const OccupancyGrid occupancy(subset_H);
+  done("occupancy");
+  orient_surfels(subset_H, tree, surfels);
+  done("sides");
+  std::vector<RimPoint> rims = find_rims(cloud_H, tree, relief);
+  done("rims");
+  const std::uint32_t patches = number_patches(subset_H, surfels, rims, relief);
+  measure_rims(cloud_H, tree, rims);
+  done("patches");
+  require(patches > 0 && !planes.planes().empty(), "a map without surfaces");
+}
+
+}  // namespace hulltrack::bench
