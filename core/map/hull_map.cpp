@@ -21,7 +21,7 @@ HullMap::HullMap(Cloud cloud_H)
     : cloud_H_(std::move(cloud_H)),
       tree_(cloud_H_),
       subset_H_(thinned(cloud_H_, kSubsetVoxel)),
-      surfels_(compute_surfels(subset_H_, cloud_H_, tree_)),
+      surfels_(compute_surfels(subset_H_, tree_)),
       occluders_H_(thinned(cloud_H_, kOccluderVoxel)),
       relief_(cloud_H_),
       planes_(cloud_H_, tree_, relief_),
@@ -29,7 +29,7 @@ HullMap::HullMap(Cloud cloud_H)
   orient_surfels(subset_H_, tree_, surfels_);
   rims_ = find_rims(cloud_H_, tree_, relief_);
   patches_ = number_patches(subset_H_, surfels_, rims_, relief_);
-  measure_rims(cloud_H_, tree_, rims_);
+  measure_rims(tree_, rims_);
   probes_H_ = subset_H_;
   for (const RimPoint& rim : rims_) {
     probes_H_.push_back(rim.p_H);

@@ -18,7 +18,6 @@ constexpr float kBelowRim = 0.5F;  // m: sheer along a hatch; the deck is farthe
 // A coaming's top is 0.3 m broad or more: of points 0.1 m apart one row at least has a disc of this radius.
 constexpr float kRimVoxel = 0.1F;    // m
 constexpr float kRimRadius = 0.12F;  // m
-constexpr std::size_t kRimNeighbours = 160;
 constexpr std::size_t kFewestRimNeighbours = 8;
 constexpr double kRimFlat = 0.02;        // m RMS
 constexpr double kRimNarrow = 0.04;      // m RMS across; a full disc has 0.06
@@ -100,11 +99,11 @@ std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std:
 }
 
 /// The rim's surface at p, or not: level, flat, and all around p.
-bool is_on_rim(const Point& p, const std::vector<Neighbour>& neighbours, const Cloud& cloud, RimPoint& rim) {
+bool is_on_rim(const Point& p, const Cloud& neighbours, RimPoint& rim) {
   if (neighbours.size() < kFewestRimNeighbours) {
     return false;
   }
-  const PlaneFit fit = fit_plane(p, neighbours, cloud);
+  const PlaneFit fit = fit_plane(p, neighbours);
   if (fit.spread[0] > kRimFlat || fit.spread[1] < kRimNarrow || fit.centroid.norm() > kRimOffCentre ||
       std::abs(fit.normal.z()) < kRimLevel) {
     return false;
@@ -161,16 +160,15 @@ void straighten(std::vector<RimPoint*>& strip) {
 }
 
 /// Where the map's surface of that height ends to either side, seen over the whole strip.
-void measure_strip(const Cloud& cloud, const KdTree& map, std::vector<RimPoint*>& strip) {
-  constexpr std::size_t kMostNeighbours = 2048;
+void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
   constexpr float kBin = 0.0125F;  // m
   constexpr int kBins = static_cast<int>(2.0F * kRimAside / kBin);
   std::array<float, kBins> profile{};
-  std::vector<Neighbour> neighbours;
+  Cloud neighbours;
   for (const RimPoint* rim : strip) {
-    map.nearest_k(rim->p_H, kMostNeighbours, 1.2F * kRimAside, neighbours);
-    for (const Neighbour& neighbour : neighbours) {
-      const Point d = cloud[neighbour.index] - rim->p_H;
+    map.within(rim->p_H, 1.2F * kRimAside, neighbours);
+    for (const Point& neighbour : neighbours) {
+      const Point d = neighbour - rim->p_H;
       const float s = rim->across_H.dot(d);
       const float along = Point::UnitZ().cross(rim->across_H).dot(d);
       const int bin = static_cast<int>(std::floor((s + kRimAside) / kBin));
@@ -256,18 +254,18 @@ std::vector<RimPoint> find_rims(const Cloud& cloud_H, const KdTree& map, const R
   VoxelFilter(kRimVoxel).filter(cloud_H, thin);
   std::vector<RimPoint> fine;
   Cloud fine_points;
-  std::vector<Neighbour> neighbours;
+  Cloud neighbours;
   for (const Point& p : thin) {
     const std::optional<Point> over_hold = relief.over_pit_near(p, kRimReach);
     if (!over_hold || relief.in_covers_place(p) || p.z() < relief.rim_around(*over_hold) - kBelowRim) {
       continue;
     }
-    map.nearest_k(p, kRimNeighbours, kRimRadius, neighbours);
+    map.within(p, kRimRadius, neighbours);
     RimPoint rim;
     const Point to_hold = *over_hold - p;
     const bool along_x = std::abs(to_hold.x()) > kCorner * std::abs(to_hold.y());
     const bool along_y = std::abs(to_hold.y()) > kCorner * std::abs(to_hold.x());
-    if ((along_x || along_y) && is_on_rim(p, neighbours, cloud_H, rim)) {
+    if ((along_x || along_y) && is_on_rim(p, neighbours, rim)) {
       rim.over_hold_H = *over_hold;
       rim.across_H = along_x ? Point(std::copysign(1.0F, to_hold.x()), 0.0F, 0.0F)
                              : Point(0.0F, std::copysign(1.0F, to_hold.y()), 0.0F);
@@ -323,7 +321,7 @@ std::uint32_t number_patches(const Cloud& points_H, std::vector<Surfel>& surfels
   return patches;
 }
 
-void measure_rims(const Cloud& cloud_H, const KdTree& map, std::vector<RimPoint>& rims) {
+void measure_rims(const KdTree& map, std::vector<RimPoint>& rims) {
   std::map<std::uint32_t, std::vector<RimPoint*>> strips;
   for (RimPoint& rim : rims) {
     if (rim.patch != Surfel::kNoPatch) {
@@ -333,7 +331,7 @@ void measure_rims(const Cloud& cloud_H, const KdTree& map, std::vector<RimPoint>
   for (auto& [patch, strip] : strips) {
     straighten(strip);
     if (!strip.empty()) {
-      measure_strip(cloud_H, map, strip);
+      measure_strip(map, strip);
     }
   }
 }

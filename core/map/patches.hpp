@@ -42,6 +42,6 @@ std::uint32_t number_patches(const Cloud& points_H, std::vector<Surfel>& surfels
                              const Relief& relief);
 
 /// Brings numbered rim points onto the middle line of their strips and finds the edges.
-void measure_rims(const Cloud& cloud_H, const KdTree& map, std::vector<RimPoint>& rims);
+void measure_rims(const KdTree& map, std::vector<RimPoint>& rims);
 
 }  // namespace hulltrack

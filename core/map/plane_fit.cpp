@@ -6,18 +6,24 @@
 
 namespace hulltrack {
 
-PlaneFit fit_plane(const Point& p, const std::vector<Neighbour>& neighbours, const Cloud& cloud) {
+PlaneFit fit_plane(const Point& p, std::span<const Point> neighbours) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const Neighbour& neighbour : neighbours) {
-    const Eigen::Vector3d d = (cloud[neighbour.index] - p).cast<double>();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();   // xx, yy, zz
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();  // yz, zx, xy
+  for (const Point& neighbour : neighbours) {
+    const Eigen::Vector3d d = (neighbour - p).cast<double>();
     sum += d;
-    squares += d * d.transpose();
+    squares += d.cwiseProduct(d);
+    products += Eigen::Vector3d(d.y() * d.z(), d.z() * d.x(), d.x() * d.y());
   }
+  Eigen::Matrix3d moments;
+  moments << squares.x(), products.z(), products.y(),  //
+      products.z(), squares.y(), products.x(),         //
+      products.y(), products.x(), squares.z();
   const double n = static_cast<double>(neighbours.size());
   PlaneFit fit;
   fit.centroid = sum / n;
-  const Eigen::Matrix3d covariance = squares / n - fit.centroid * fit.centroid.transpose();
+  const Eigen::Matrix3d covariance = moments / n - fit.centroid * fit.centroid.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
   fit.normal = solver.eigenvectors().col(0);

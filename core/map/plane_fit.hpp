@@ -5,10 +5,9 @@
 #pragma once
 
 #include <array>
-#include <vector>
+#include <span>
 
 #include "core/geometry/cloud.hpp"
-#include "core/search/kdtree.hpp"
 
 namespace hulltrack {
 
@@ -18,7 +17,6 @@ struct PlaneFit {
   std::array<double, 3> spread;  // RMS: from the plane, across its narrow and its wide direction, m
 };
 
-[[nodiscard]] PlaneFit fit_plane(const Point& p, const std::vector<Neighbour>& neighbours,
-                                 const Cloud& cloud);
+[[nodiscard]] PlaneFit fit_plane(const Point& p, std::span<const Point> neighbours);
 
 }  // namespace hulltrack

@@ -23,7 +23,7 @@ std::vector<PlaneMap::Plane> find_planes(const Cloud& cloud_H, const KdTree& map
   Cloud points_H;
   VoxelFilter(PlaneMap::kSpacing).filter(cloud_H, points_H);
   std::vector<PlaneMap::Plane> planes;
-  for (const Surfel& surfel : compute_surfels(points_H, cloud_H, map)) {
+  for (const Surfel& surfel : compute_surfels(points_H, map)) {
     if (surfel.planar && !may_change(surfel, relief)) {
       planes.push_back({surfel.centre_H, surfel.normal_H, surfel.surface, 0});
     }

@@ -4,7 +4,7 @@
 // none, since a point near them says nothing about a plane. Nor have the floors of holds, which cargo covers,
 // and hatch covers, which move (relief.hpp). Each plane is the fit to about a hundred map
 // points, so that it is a tenth as noisy as one of them. Frame H, metres. Immutable.
-// Cost: 10 us a plane to build, some 100,000 planes for a ship of 120 m; 45 bytes a plane.
+// Cost: 2 us a plane to build, some 100,000 planes for a ship of 120 m; 45 bytes a plane.
 #pragma once
 
 #include <cstdint>

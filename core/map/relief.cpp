@@ -35,6 +35,7 @@ Relief::Relief(std::span<const Point> cloud_H) {
   }
   find_horizons();
   find_pits();
+  find_insides();
   raise_covers_place();
 }
 
@@ -105,6 +106,19 @@ void Relief::find_pits() {
   }
 }
 
+void Relief::find_insides() {
+  const auto is_pit = [this](Cell c) { return inside(c) && !std::isnan(rim_[index(c)]); };
+  inside_pit_.reserve(rim_.size());
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      inside_pit_.push_back(is_pit({column, row}) &&
+                            std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
+                              return is_pit({column + d.first, row + d.second});
+                            }));
+    }
+  }
+}
+
 void Relief::raise_covers_place() {
   covers_from_.assign(top_.size(), kNowhere);
   const int reach = cells(kCoversReach);
@@ -134,17 +148,16 @@ std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
   const int far = cells(reach);
   std::optional<Point> best;
   float best2 = reach * reach;
-  const auto is_pit = [&](Cell c) { return inside(c) && !std::isnan(rim_[index(c)]); };
   for (int dr = -far; dr <= far; ++dr) {
     for (int dc = -far; dc <= far; ++dc) {
       const Cell c{at.column + dc, at.row + dr};
+      if (!inside(c) || !inside_pit_[index(c)]) {
+        continue;
+      }
       const Point q(corner_.x() + (static_cast<float>(c.column) + 0.5F) * kCell,
                     corner_.y() + (static_cast<float>(c.row) + 0.5F) * kCell, p.z());
       const float distance2 = (q - p).squaredNorm();
-      if (distance2 < best2 && is_pit(c) &&
-          std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
-            return is_pit({c.column + d.first, c.row + d.second});
-          })) {
+      if (distance2 < best2) {
         best2 = distance2;
         best = q;
       }

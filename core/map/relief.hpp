@@ -55,6 +55,7 @@ class Relief {
   [[nodiscard]] float lowest_horizon(Cell from) const;
   void find_horizons();
   void find_pits();
+  void find_insides();
   void raise_covers_place();
 
   Point corner_ = Point::Zero();
@@ -63,6 +64,7 @@ class Relief {
   std::vector<float> top_;          // per cell: its highest point; -infinity without one
   std::vector<float> horizon_;      // per cell: the least, over all directions, of the highest structure
   std::vector<float> rim_;          // per cell of a pit: the height of its rim; NaN elsewhere
+  std::vector<bool> inside_pit_;    // per cell: it and the eight around it are pit
   std::vector<float> covers_from_;  // per cell: above this height is the covers' place; infinity = nowhere
 };
 

@@ -22,11 +22,11 @@ SurfaceClass classify(const Point& n) {
   return SurfaceClass::other;
 }
 
-Surfel surfel_of(const Point& p, const std::vector<Neighbour>& neighbours, const Cloud& cloud) {
+Surfel surfel_of(const Point& p, const Cloud& neighbours) {
   if (neighbours.size() < kFewestNeighbours) {
     return {};
   }
-  const PlaneFit fit = fit_plane(p, neighbours, cloud);
+  const PlaneFit fit = fit_plane(p, neighbours);
   Surfel surfel;
   surfel.normal_H = fit.normal.cast<float>();
   surfel.centre_H = p + fit.centroid.cast<float>();
@@ -37,13 +37,13 @@ Surfel surfel_of(const Point& p, const std::vector<Neighbour>& neighbours, const
 
 }  // namespace
 
-std::vector<Surfel> compute_surfels(const Cloud& points_H, const Cloud& cloud_H, const KdTree& map) {
+std::vector<Surfel> compute_surfels(const Cloud& points_H, const KdTree& map) {
   std::vector<Surfel> surfels;
   surfels.reserve(points_H.size());
-  std::vector<Neighbour> neighbours;
+  Cloud neighbours;
   for (const Point& p : points_H) {
-    map.nearest_k(p, kSurfelNeighbours, kSurfelRadius, neighbours);
-    surfels.push_back(surfel_of(p, neighbours, cloud_H));
+    map.within(p, kSurfelRadius, neighbours);
+    surfels.push_back(surfel_of(p, neighbours));
   }
   return surfels;
 }

@@ -1,6 +1,7 @@
 #include "core/search/kdtree.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 
 #include "core/search/kdtree_build.hpp"
@@ -65,6 +66,17 @@ void KdTree::nearest_k(const Point& query, std::size_t k, float radius, std::vec
   for (const kdtree::Hit& hit : hits) {
     out.push_back({impl_->layout.index[hit.slot], hit.squared_distance});
   }
+}
+
+void KdTree::within(const Point& query, float radius, Cloud& out) const {
+  out.clear();
+  const auto add = [](const kdtree::Leaf& leaf, std::uint32_t mask, void* points) {
+    for (; mask != 0; mask &= mask - 1) {
+      const int i = std::countr_zero(mask);
+      static_cast<Cloud*>(points)->emplace_back(leaf.x[i], leaf.y[i], leaf.z[i]);
+    }
+  };
+  impl_->kernels.within(impl_->layout, query, kdtree::limit_below(radius), add, &out);
 }
 
 void KdTree::neighbourhoods(std::span<const Point> queries, std::span<const float> radii, float margin,

@@ -33,6 +33,9 @@ struct Hit {
                                          : -1.0F;
 }
 
+/// Takes points of a leaf, one bit each; `where` is the caller's.
+using LeafSink = void (*)(const Leaf& leaf, std::uint32_t points, void* where);
+
 struct Kernels {
   const char* name;
 
@@ -46,6 +49,9 @@ struct Kernels {
   /// The nearest hits.size() points with squared distance <= limit, nearest first, ties by index; returns
   /// how many there are.
   std::size_t (*nearest_k)(const Layout& layout, const Point& query, float limit, std::span<Hit> hits);
+
+  /// Gives all points with squared distance <= limit to the sink, leaf by leaf.
+  void (*within)(const Layout& layout, const Point& query, float limit, LeafSink sink, void* where);
 };
 
 [[nodiscard]] const Kernels& sse2_kernels();

@@ -35,7 +35,8 @@ HULLTRACK_TARGET inline float smallest(Lanes a) {
 }  // namespace avx2
 
 const Kernels& avx2_kernels() {
-  static constexpr Kernels kernels{"AVX2", avx2::nearest, avx2::neighbourhoods, avx2::nearest_k};
+  static constexpr Kernels kernels{"AVX2", avx2::nearest, avx2::neighbourhoods, avx2::nearest_k,
+                                   avx2::within};
   return kernels;
 }
 

@@ -32,3 +32,14 @@ HULLTRACK_TARGET std::size_t nearest_k(const Layout& layout, const Point& query,
   }
   return search.found.count;
 }
+
+HULLTRACK_TARGET void within(const Layout& layout, const Point& query, float limit, LeafSink sink,
+                             void* where) {
+  if (!is_searchable(layout, query)) {
+    return;
+  }
+  Search<WithinCollector> search;
+  search.start(0, query, {limit, sink, where});
+  while (search.step(layout)) {
+  }
+}

@@ -1,4 +1,4 @@
-// What does a search gather: the nearest point, the nearest few with a margin, the nearest k?
+// What does a search gather: the nearest point, the nearest few with a margin, the nearest k, all?
 //
 // A part of kdtree_query_body.hpp, which says what is special about it.
 
@@ -177,6 +177,32 @@ struct KNearestCollector {
     }
     if (count == hits.size()) {
       limit = hits[count - 1].squared_distance;
+    }
+  }
+};
+
+// All points.
+struct WithinCollector {
+  struct Task {
+    float limit;
+    LeafSink sink;
+    void* where;
+  };
+
+  float limit;
+  LeafSink sink;
+  void* where;
+
+  HULLTRACK_TARGET void start(const Task& task, std::size_t) {
+    limit = task.limit;
+    sink = task.sink;
+    where = task.where;
+  }
+
+  HULLTRACK_TARGET void scan(const Layout& layout, const Query& q, std::uint32_t leaf) {
+    const std::uint32_t points = LeafDistances(q, layout.leaves[leaf]).within(limit);
+    if (points != 0) {
+      sink(layout.leaves[leaf], points, where);
     }
   }
 };

@@ -40,7 +40,8 @@ inline float smallest(Lanes a) {
 }  // namespace sse2
 
 const Kernels& sse2_kernels() {
-  static constexpr Kernels kernels{"SSE2", sse2::nearest, sse2::neighbourhoods, sse2::nearest_k};
+  static constexpr Kernels kernels{"SSE2", sse2::nearest, sse2::neighbourhoods, sse2::nearest_k,
+                                   sse2::within};
   return kernels;
 }
 

@@ -113,7 +113,7 @@ void time_map_parts(const Cloud& cloud_H, Parts& parts) {
   done("tree");
   const Cloud subset_H = thinned(HullMap::kSubsetVoxel);
   done("subset");
-  std::vector<Surfel> surfels = compute_surfels(subset_H, cloud_H, tree);
+  std::vector<Surfel> surfels = compute_surfels(subset_H, tree);
   done("surfels");
   const PointBlocks occluders_H(thinned(HullMap::kOccluderVoxel));
   done("occluders");
@@ -128,7 +128,7 @@ void time_map_parts(const Cloud& cloud_H, Parts& parts) {
   std::vector<RimPoint> rims = find_rims(cloud_H, tree, relief);
   done("rims");
   const std::uint32_t patches = number_patches(subset_H, surfels, rims, relief);
-  measure_rims(cloud_H, tree, rims);
+  measure_rims(tree, rims);
   done("patches");
   require(patches > 0 && !planes.planes().empty(), "a map without surfaces");
 }

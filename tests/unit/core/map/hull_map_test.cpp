@@ -192,9 +192,7 @@ Cloud plate(const Eigen::Vector3d& normal) {
   return cloud;
 }
 
-Surfel middle_surfel(const Cloud& cloud) {
-  return compute_surfels({Point::Zero()}, cloud, KdTree(cloud)).front();
-}
+Surfel middle_surfel(const Cloud& cloud) { return compute_surfels({Point::Zero()}, KdTree(cloud)).front(); }
 
 TEST(Surfels, ClassIsTheAxisWithin32Degrees) {
   for (int axis = 0; axis < 3; ++axis) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <random>
 #include <set>
@@ -100,8 +101,24 @@ void expect_batches_equal_brute_force(const KdTree& tree, const Cloud& cloud, co
   }
 }
 
+/// within() gives the points that brute force does, whichever order.
+void expect_all_within(const Cloud& found, const std::vector<Neighbour>& expected, const Cloud& cloud) {
+  using Coordinates = std::array<float, 3>;
+  std::multiset<Coordinates> given;
+  std::multiset<Coordinates> wanted;
+  for (const Point& p : found) {
+    given.insert({p.x(), p.y(), p.z()});
+  }
+  for (const Neighbour& neighbour : expected) {
+    const Point& p = cloud[neighbour.index];
+    wanted.insert({p.x(), p.y(), p.z()});
+  }
+  ASSERT_EQ(given, wanted);
+}
+
 void expect_equals_brute_force(const KdTree& tree, const Cloud& cloud, const Cloud& queries) {
   std::vector<Neighbour> few;
+  Cloud all;
   for (const Point& q : queries) {
     for (const float radius : {0.05F, 0.3F, 2.0F, kInfinity}) {
       const std::vector<Neighbour> expected = brute_force(cloud, q, radius);
@@ -110,6 +127,10 @@ void expect_equals_brute_force(const KdTree& tree, const Cloud& cloud, const Clo
       if (nearest) {
         ASSERT_EQ(nearest->index, expected.front().index);
         ASSERT_EQ(nearest->squared_distance, expected.front().squared_distance);
+      }
+      if (radius < 1.0F) {
+        tree.within(q, radius, all);
+        ASSERT_NO_FATAL_FAILURE(expect_all_within(all, expected, cloud));
       }
       for (const std::size_t k : {std::size_t{1}, std::size_t{5}, std::size_t{40}}) {
         tree.nearest_k(q, k, radius, few);
