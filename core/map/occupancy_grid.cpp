@@ -1,6 +1,7 @@
 #include "core/map/occupancy_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/geometry/box.hpp"
@@ -9,6 +10,11 @@ namespace hulltrack {
 namespace {
 
 constexpr int kMargin = 1;  // cells around the occupied ones
+
+// Heights are summed by whole registers, and in bytes as long as these hold what so many cells are worth.
+constexpr std::size_t kLanes = 64;
+constexpr std::size_t kCellsInBytes = 127;  // of 2 at most
+static_assert(kLanes >= OccupancyGrid::kHeights);
 
 }  // namespace
 
@@ -54,6 +60,15 @@ void OccupancyGrid::mark(const Index& cell) {
 void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
                               std::span<std::uint16_t, kHeights> worth) const {
   const int depth = size_.z + 4 * kUp;
+  std::array<std::uint8_t, kLanes> bytes{};
+  std::size_t cells_in_bytes = 0;
+  const auto empty_bytes = [&] {
+    for (std::size_t k = 0; k < kHeights; ++k) {
+      worth[k] = static_cast<std::uint16_t>(worth[k] + bytes[k]);
+    }
+    bytes.fill(0);
+    cells_in_bytes = 0;
+  };
   for (const Index& cell : cells) {
     const int cx = cell.x + x;
     const int cy = cell.y + y;
@@ -64,10 +79,15 @@ void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
                                           static_cast<std::size_t>(cy)) *
                                              static_cast<std::size_t>(depth) +
                                          static_cast<std::size_t>(cell.z + kUp)];
-    for (std::size_t k = 0; k < kHeights; ++k) {
-      worth[k] = static_cast<std::uint16_t>(worth[k] + lowest[k]);
+    // Of the highest cell the lanes beyond kHeights are empty ones of the same column.
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      bytes[k] = static_cast<std::uint8_t>(bytes[k] + lowest[k]);
+    }
+    if (++cells_in_bytes == kCellsInBytes) {
+      empty_bytes();
     }
   }
+  empty_bytes();
 }
 
 }  // namespace hulltrack
