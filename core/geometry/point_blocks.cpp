@@ -1,5 +1,8 @@
 #include "core/geometry/point_blocks.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "core/geometry/box.hpp"
 #include "core/geometry/z_order.hpp"
 
@@ -16,6 +19,26 @@ PointBlocks::PointBlocks(std::span<const Point> cloud) {
       ball.radius = std::max(ball.radius, (p - ball.centre).norm());
     }
   }
+}
+
+bool PointBlocks::may_reach(const Point& centre_L, float radius, const SightLimits& limits) {
+  constexpr float kRounding = 1e-3F;  // m and rad: far more than that of floats within 1 km
+  constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
+  const float distance2 = centre_L.squaredNorm();
+  const float reach = limits.range + radius + kRounding;
+  if (distance2 > reach * reach) {
+    return false;
+  }
+  const float beyond2 = distance2 - radius * radius;
+  if (!(beyond2 > 0.0F)) {
+    return true;  // all around the sensor
+  }
+  // Seen from L the ball is a disc about its centre's direction: rows differ by no more than its radius.
+  const float elevation = fast_atan2(centre_L.z(), centre_L.head<2>().norm());
+  const float around = fast_atan2(radius, std::sqrt(beyond2)) + kRounding;
+  const float lowest = (static_cast<float>(limits.lowest_row) - 90.0F) * kDegree;
+  const float highest = (static_cast<float>(limits.highest_row) - 89.0F) * kDegree;
+  return elevation + around >= lowest && elevation - around <= highest;
 }
 
 }  // namespace hulltrack

@@ -1,5 +1,5 @@
-// A fixed cloud in blocks of neighbours, each in a ball: what is out of a sensor's range is passed over
-// whole.
+// A fixed cloud in blocks of neighbours, each in a ball: what a sensor cannot reach or does not look at is
+// passed over whole.
 //
 // Any frame; metres, float. Immutable. No failure: points that are not finite are left out.
 // Cost: some 20 ns a point to build.
@@ -13,8 +13,17 @@
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/geometry/sighting.hpp"
+#include "core/geometry/spherical_grid.hpp"
 
 namespace hulltrack {
+
+/// A part of what surrounds a sensor: as far as `range` (m), between two rows of SphericalGrid, both
+/// included.
+struct SightLimits {
+  float range;
+  int lowest_row = 0;
+  int highest_row = SphericalGrid::kRows - 1;
+};
 
 class PointBlocks {
  public:
@@ -23,10 +32,10 @@ class PointBlocks {
   /// The points, neighbours together: every Sightings::kBlock of them are a block.
   [[nodiscard]] const Cloud& points() const { return points_; }
 
-  /// As sight(), in blocks of which some point may lie within `range` (m) of L's origin: calls
-  /// visit(sightings, index therein) for all points of those.
+  /// As sight(), in blocks of which some point may lie within the limits: calls visit(sightings, index
+  /// therein) for all points of those.
   template <typename Visit>
-  void sight_within(float range, const Pose& T_L_A, Visit&& visit) const;
+  void sight_within(const SightLimits& limits, const Pose& T_L_A, Visit&& visit) const;
 
  private:
   [[nodiscard]] std::span<const Point> block(std::size_t b) const {
@@ -39,17 +48,19 @@ class PointBlocks {
     float radius;
   };
 
+  /// Whether the limits may hold some point of a ball in L.
+  [[nodiscard]] static bool may_reach(const Point& centre_L, float radius, const SightLimits& limits);
+
   Cloud points_;
   std::vector<Ball> balls_;  // per block
 };
 
 template <typename Visit>
-void PointBlocks::sight_within(float range, const Pose& T_L_A, Visit&& visit) const {
-  constexpr float kRounding = 1e-3F;  // m: far more than that of floats within 1 km
+void PointBlocks::sight_within(const SightLimits& limits, const Pose& T_L_A, Visit&& visit) const {
   const Eigen::Matrix3f R = T_L_A.linear().cast<float>();
   const Point t = T_L_A.translation().cast<float>();
   for (std::size_t b = 0; b < balls_.size(); ++b) {
-    if ((R * balls_[b].centre + t).norm() > range + balls_[b].radius + kRounding) {
+    if (!may_reach(R * balls_[b].centre + t, balls_[b].radius, limits)) {
       continue;
     }
     const std::span<const Point> points = block(b);

@@ -23,6 +23,7 @@ void ScanView::rebuild(std::span<const Point> returns_W, const Pose& T_W_L) {
   });
   sort_by_cell();
   find_fronts();
+  spread_fronts();
 }
 
 void ScanView::sort_by_cell() {
@@ -47,7 +48,6 @@ void ScanView::note_field_of_view(SphericalGrid::Cell cell) {
 
 void ScanView::find_fronts() {
   front_.assign(SphericalGrid::kCells, kNothing);
-  front_around_.assign(SphericalGrid::kCells, kNothing);
   for (int row = 0; row < SphericalGrid::kRows; ++row) {
     for (int column = 0; column < SphericalGrid::kColumns; ++column) {
       const SphericalGrid::Cell cell{row, column};
@@ -62,14 +62,32 @@ void ScanView::find_fronts() {
       }
       const auto middle = ranges2_.begin() + static_cast<std::ptrdiff_t>(ranges2_.size() / 2);
       std::nth_element(ranges2_.begin(), middle, ranges2_.end());
-      const float front = std::sqrt(*middle);
-      front_[cell.index()] = front;
-      for (int dr = -1; dr <= 1; ++dr) {
-        for (int dc = -1; dc <= 1; ++dc) {
-          float& around = front_around_[cell.moved(dr, dc).index()];
-          around = std::min(around, front);
-        }
-      }
+      front_[cell.index()] = std::sqrt(*middle);
+    }
+  }
+}
+
+// First along the rows, which close upon themselves, then across them.
+void ScanView::spread_fronts() {
+  constexpr std::size_t kWidth = SphericalGrid::kColumns;
+  front_beside_.resize(SphericalGrid::kCells);
+  front_around_.resize(SphericalGrid::kCells);
+  for (std::size_t begin = 0; begin < SphericalGrid::kCells; begin += kWidth) {
+    const float* row = &front_[begin];
+    float* beside = &front_beside_[begin];
+    beside[0] = std::min({row[kWidth - 1], row[0], row[1]});
+    for (std::size_t i = 1; i + 1 < kWidth; ++i) {
+      beside[i] = std::min(std::min(row[i - 1], row[i]), row[i + 1]);
+    }
+    beside[kWidth - 1] = std::min({row[kWidth - 2], row[kWidth - 1], row[0]});
+  }
+  for (std::size_t begin = 0; begin < SphericalGrid::kCells; begin += kWidth) {
+    const float* here = &front_beside_[begin];
+    const float* below = begin == 0 ? here : here - kWidth;
+    const float* above = begin + kWidth == SphericalGrid::kCells ? here : here + kWidth;
+    float* around = &front_around_[begin];
+    for (std::size_t i = 0; i < kWidth; ++i) {
+      around[i] = std::min(std::min(below[i], here[i]), above[i]);
     }
   }
 }

@@ -37,6 +37,11 @@ class ScanView {
            columns_seen_[static_cast<std::size_t>(cell.column)];
   }
 
+  /// The rows that looks_at() says yes to; none before the first return: then the lowest is above the
+  /// highest.
+  [[nodiscard]] int lowest_row() const { return lowest_row_; }
+  [[nodiscard]] int highest_row() const { return highest_row_; }
+
   /// True if a point at `range` in this cell is behind most of what the scan saw: by kBehind in the cell
   /// itself, or by kFarBehind in a neighbouring one (beams are sparser than cells; a chute is nearer by
   /// metres, while a deck seen at a low angle changes its range by decimetres from cell to cell).
@@ -51,6 +56,7 @@ class ScanView {
   void sort_by_cell();
   void note_field_of_view(SphericalGrid::Cell cell);
   void find_fronts();
+  void spread_fronts();
 
   Pose T_W_L_ = Pose::Identity();
   std::vector<Point> unsorted_L_;
@@ -58,6 +64,7 @@ class ScanView {
   std::vector<Point> points_L_;       // by cell
   std::vector<std::uint32_t> first_;  // kCells + 1 offsets into points_L_
   std::vector<float> front_;          // per cell: median range of its returns, m; infinity without a return
+  std::vector<float> front_beside_;   // the least of a cell and its two neighbours in the row
   std::vector<float> front_around_;   // the least of a cell and its eight neighbours
   std::vector<float> ranges2_;        // of one cell, squared
   int lowest_row_ = SphericalGrid::kRows;

@@ -26,7 +26,9 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
     const Pose T_L_H = view.T_W_L().inverse() * T_W_H;
     const auto min_range = static_cast<float>(sensors[lidar].min_range);
     const auto range = static_cast<float>(std::min(sensors[lidar].max_range, farthest_));
-    render(map.occluders_H(), T_L_H, range);
+    // An occluder reaches kLargestSplat rows beyond its own.
+    render(map.occluders_H(), T_L_H,
+           {range, view.lowest_row() - kLargestSplat, view.highest_row() + kLargestSplat});
     sight(candidates_H, T_L_H, [&](std::size_t candidate, const Sightings& from_L, std::size_t i) {
       const float r2 = from_L.range2[i];
       if (!(r2 <= range * range && r2 >= min_range * min_range) || seen_[candidate]) {
@@ -47,15 +49,18 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
   }
 }
 
-void Visibility::render(const PointBlocks& occluders_H, const Pose& T_L_H, float range) {
+void Visibility::render(const PointBlocks& occluders_H, const Pose& T_L_H, const SightLimits& limits) {
   cell_nearest_.assign(SphericalGrid::kCells, kNothing);
-  occluders_H.sight_within(range, T_L_H, [&](const Sightings& from_L, std::size_t i) {
+  const float range2 = limits.range * limits.range;
+  occluders_H.sight_within(limits, T_L_H, [&](const Sightings& from_L, std::size_t i) {
     float& nearest2 = cell_nearest_[from_L.cell[i]];
-    nearest2 = std::min(nearest2, from_L.range2[i] <= range * range ? from_L.range2[i] : kNothing);
+    nearest2 = std::min(nearest2, from_L.range2[i] <= range2 ? from_L.range2[i] : kNothing);
   });
   // The nearest occluder of a cell covers the most: the others behind it hide nothing besides.
   map_nearest_.assign(SphericalGrid::kCells, kNothing);
-  for (int row = 0; row < SphericalGrid::kRows; ++row) {
+  const int lowest = std::max(limits.lowest_row, 0);
+  const int highest = std::min(limits.highest_row, SphericalGrid::kRows - 1);
+  for (int row = lowest; row <= highest; ++row) {
     for (int column = 0; column < SphericalGrid::kColumns; ++column) {
       const SphericalGrid::Cell cell{row, column};
       if (cell_nearest_[cell.index()] != kNothing) {
@@ -68,6 +73,10 @@ void Visibility::render(const PointBlocks& occluders_H, const Pose& T_L_H, float
 void Visibility::splat(SphericalGrid::Cell cell, float r) {
   const float cells_wide = HullMap::kOccluderVoxel / (std::max(r, HullMap::kOccluderVoxel) * kDegree);
   const int reach = std::min(static_cast<int>(cells_wide / 2.0F), kLargestSplat);
+  if (reach == 0) {
+    map_nearest_[cell.index()] = std::min(map_nearest_[cell.index()], r);
+    return;
+  }
   for (int dr = -reach; dr <= reach; ++dr) {
     for (int dc = -reach; dc <= reach; ++dc) {
       float& nearest = map_nearest_[cell.moved(dr, dc).index()];

@@ -35,12 +35,12 @@ class Visibility {
            std::vector<VisiblePoint>& out);
 
  private:
-  void render(const PointBlocks& occluders_H, const Pose& T_L_H, float range);
+  void render(const PointBlocks& occluders_H, const Pose& T_L_H, const SightLimits& limits);
   void splat(SphericalGrid::Cell cell, float r);
 
   double farthest_;
   std::vector<float> cell_nearest_;  // per cell: of the occluders in it, squared, m^2
-  std::vector<float> map_nearest_;   // per cell: of the occluders that cover it, m
+  std::vector<float> map_nearest_;   // per cell that the LiDAR looks at: of the occluders that cover it, m
   std::vector<bool> seen_;           // per candidate, by an earlier LiDAR
 };
 

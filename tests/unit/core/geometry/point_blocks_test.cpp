@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <utility>
 
 namespace hulltrack {
 namespace {
@@ -46,7 +47,7 @@ TEST(PointBlocks, PassOverOnlyWhatIsOutOfRange) {
   for (const float range : {0.0F, 3.0F, 25.0F, 200.0F}) {
     std::size_t seen = 0;
     std::size_t within = 0;
-    blocks.sight_within(range, T_L_A, [&](const Sightings& from_L, std::size_t i) {
+    blocks.sight_within({range}, T_L_A, [&](const Sightings& from_L, std::size_t i) {
       ++seen;
       within += from_L.point(i).norm() <= range ? 1 : 0;
     });
@@ -56,6 +57,32 @@ TEST(PointBlocks, PassOverOnlyWhatIsOutOfRange) {
     }
     EXPECT_NEAR(static_cast<double>(within), static_cast<double>(expected), 1.0) << range;
     EXPECT_LE(seen, 2 * expected + 40 * Sightings::kBlock) << range;
+  }
+}
+
+// Every point between the rows is seen, and of the others not many; at the poles as well.
+TEST(PointBlocks, PassOverWhatIsAboveAndBelow) {
+  const Cloud cloud = random_cloud(20'000);
+  const PointBlocks blocks(cloud);
+  const Pose T_L_A = pose_from_xyz_rpy_deg({2.0, -1.0, 3.0}, {10.0, 20.0, -130.0});
+  constexpr std::pair<int, int> kRows[] = {{75, 104}, {0, 20}, {160, 179}, {-5, 184}, {90, 90}, {180, -1}};
+  for (const auto& [lowest, highest] : kRows) {
+    const auto looked_at = [&, low = lowest, high = highest](const Point& p_L) {
+      const int row = SphericalGrid::cell(p_L).row;
+      return row >= low && row <= high;
+    };
+    std::size_t seen = 0;
+    std::size_t within = 0;
+    blocks.sight_within({200.0F, lowest, highest}, T_L_A, [&](const Sightings& from_L, std::size_t i) {
+      ++seen;
+      within += looked_at(from_L.point(i)) ? 1 : 0;
+    });
+    std::size_t expected = 0;
+    sight(blocks.points(), T_L_A, [&](std::size_t, const Sightings& from_L, std::size_t i) {
+      expected += looked_at(from_L.point(i)) ? 1 : 0;
+    });
+    EXPECT_EQ(within, expected) << lowest << " to " << highest;
+    EXPECT_LE(seen, expected + 2 * cloud.size() / 3) << lowest << " to " << highest;
   }
 }
 
