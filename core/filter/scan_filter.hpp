@@ -9,6 +9,7 @@
 // buffers have grown to the scan's size.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,7 +32,8 @@ struct SensorConfig {
 
 struct FilteredScan {
   std::vector<Cloud> returns_W;  // per LiDAR all of valid range, hull or not: what it really saw
-  Cloud hull_W;                  // the candidates for hull, full resolution
+  std::vector<std::vector<std::uint8_t>> of_hull;  // for each of these: 1 if it is in hull_W
+  Cloud hull_W;                                    // the candidates for hull, full resolution
   std::uint32_t segments_left_out = 0;
 };
 

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <limits>
 
 #include "core/base/text.hpp"
 #include "core/geometry/box.hpp"
 #include "core/tracking/expected_distance.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
+#include "core/tracking/nearest_returns.hpp"
 #include "core/tracking/pose_covariance.hpp"
 #include "core/tracking/pose_finder.hpp"
 #include "core/tracking/scan_view.hpp"
@@ -49,8 +48,8 @@ struct HullTracker::Impl {
   FilteredScan filtered;
   std::vector<ScanView> views;
   std::vector<VisiblePoint> visible;
-  Cloud measured_W;  // the metrics' map points, and what is nearest to each
-  std::vector<Neighbour> nearest;
+  Cloud measured_W;  // the metrics' map points, and how far the nearest return is from each
+  NearestReturns nearest_returns;
   std::vector<double> distances;
 
   Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
@@ -70,7 +69,7 @@ struct HullTracker::Impl {
   [[nodiscard]] PlaneStep certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
                                        TrackResult& result) const;
   void look(const Joints& joints_mid);
-  DistanceMetrics measure(const Pose& T_W_H, const KdTree& scan_W);
+  DistanceMetrics measure(const Pose& T_W_H);
   IntegrityReport inspect(const Pose& T_W_H);
   void examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
                TrackResult& result);
@@ -174,7 +173,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   if (config.metrics_scope != MetricsScope::whole_map) {  // it speaks of what is in view
     q1_expected = expected_distance.q1(*map, visible, result.T_W_H, views);
   }
-  result.metrics = measure(result.T_W_H, KdTree(filtered.hull_W, TreeUse::one_batch));
+  result.metrics = measure(result.T_W_H);
   result.metrics.q1_expected = q1_expected;
 
   const Eigen::Vector3d reference_W = reference_H + result.displacement;
@@ -227,7 +226,7 @@ void HullTracker::Impl::look(const Joints& joints_mid) {
   }
 }
 
-DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H, const KdTree& scan_W) {
+DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H) {
   const Eigen::Matrix3f R = T_W_H.linear().cast<float>();
   const Point t = T_W_H.translation().cast<float>();
   measured_W.clear();
@@ -248,14 +247,7 @@ DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H, const KdTree& scan
       }
     }
   }
-  nearest.resize(measured_W.size());
-  scan_W.nearest(measured_W, std::numeric_limits<float>::infinity(), nearest);
-  distances.clear();
-  for (const Neighbour& neighbour : nearest) {
-    if (neighbour.index != Neighbour::kNone) {
-      distances.push_back(std::sqrt(static_cast<double>(neighbour.squared_distance)));
-    }
-  }
+  nearest_returns.run(measured_W, views, filtered, distances);
   return summarise_distances(distances);
 }
 

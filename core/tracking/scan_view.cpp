@@ -14,10 +14,13 @@ constexpr float kNothing = std::numeric_limits<float>::infinity();
 }  // namespace
 
 void ScanView::rebuild(std::span<const Point> returns_W, const Pose& T_W_L) {
+  const Pose T_L_W = T_W_L.inverse();
   T_W_L_ = T_W_L;
+  R_L_W_ = T_L_W.linear().cast<float>();
+  t_L_W_ = T_L_W.translation().cast<float>();
   unsorted_L_.resize(returns_W.size());
   cell_of_.resize(returns_W.size());
-  sight(returns_W, T_W_L.inverse(), [this](std::size_t at, const Sightings& seen, std::size_t i) {
+  sight(returns_W, T_L_W, [this](std::size_t at, const Sightings& seen, std::size_t i) {
     unsorted_L_[at] = seen.point(i);
     cell_of_[at] = seen.cell[i];
   });
@@ -35,8 +38,11 @@ void ScanView::sort_by_cell() {
     first_[i] += first_[i - 1];
   }
   points_L_.resize(unsorted_L_.size());
+  numbers_.resize(unsorted_L_.size());
   for (std::size_t i = unsorted_L_.size(); i-- > 0;) {  // filled from the back: offsets end where cells begin
-    points_L_[--first_[cell_of_[i]]] = unsorted_L_[i];
+    const std::uint32_t at = --first_[cell_of_[i]];
+    points_L_[at] = unsorted_L_[i];
+    numbers_[at] = static_cast<std::uint32_t>(i);
   }
 }
 

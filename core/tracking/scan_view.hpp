@@ -32,6 +32,21 @@ class ScanView {
     return std::span(points_L_).subspan(first_[i], first_[i + 1] - first_[i]);
   }
 
+  /// The returns of columns first .. last (first <= last < kColumns) of a row, and where each of them stands
+  /// in `returns_W` of rebuild().
+  struct Returns {
+    std::span<const Point> points_L;
+    std::span<const std::uint32_t> numbers;
+  };
+  [[nodiscard]] Returns returns(int row, int first, int last) const {
+    const std::size_t begin = first_[SphericalGrid::Cell{row, first}.index()];
+    const std::size_t count = first_[SphericalGrid::Cell{row, last}.index() + 1] - begin;
+    return {std::span(points_L_).subspan(begin, count), std::span(numbers_).subspan(begin, count)};
+  }
+
+  /// A point of W in L.
+  [[nodiscard]] Point seen(const Point& p_W) const { return R_L_W_ * p_W + t_L_W_; }
+
   [[nodiscard]] bool looks_at(SphericalGrid::Cell cell) const {
     return cell.row >= lowest_row_ && cell.row <= highest_row_ &&
            columns_seen_[static_cast<std::size_t>(cell.column)];
@@ -59,14 +74,17 @@ class ScanView {
   void spread_fronts();
 
   Pose T_W_L_ = Pose::Identity();
+  Eigen::Matrix3f R_L_W_ = Eigen::Matrix3f::Identity();
+  Point t_L_W_ = Point::Zero();
   std::vector<Point> unsorted_L_;
   std::vector<std::uint32_t> cell_of_;
-  std::vector<Point> points_L_;       // by cell
-  std::vector<std::uint32_t> first_;  // kCells + 1 offsets into points_L_
-  std::vector<float> front_;          // per cell: median range of its returns, m; infinity without a return
-  std::vector<float> front_beside_;   // the least of a cell and its two neighbours in the row
-  std::vector<float> front_around_;   // the least of a cell and its eight neighbours
-  std::vector<float> ranges2_;        // of one cell, squared
+  std::vector<Point> points_L_;         // by cell
+  std::vector<std::uint32_t> numbers_;  // likewise: of the returns given
+  std::vector<std::uint32_t> first_;    // kCells + 1 offsets into points_L_
+  std::vector<float> front_;            // per cell: median range of its returns, m; infinity without a return
+  std::vector<float> front_beside_;     // the least of a cell and its two neighbours in the row
+  std::vector<float> front_around_;     // the least of a cell and its eight neighbours
+  std::vector<float> ranges2_;          // of one cell, squared
   int lowest_row_ = SphericalGrid::kRows;
   int highest_row_ = -1;
   std::bitset<SphericalGrid::kColumns> columns_seen_;

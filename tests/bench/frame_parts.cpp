@@ -1,11 +1,10 @@
 #include "tests/bench/frame_parts.hpp"
 
-#include <limits>
-
 #include "core/filter/voxel_filter.hpp"
 #include "core/geometry/box.hpp"
 #include "core/map/surfels.hpp"
 #include "core/tracking/integrity.hpp"
+#include "core/tracking/nearest_returns.hpp"
 #include "core/tracking/pose_covariance.hpp"
 #include "core/tracking/pose_finder.hpp"
 #include "core/tracking/visibility.hpp"
@@ -40,7 +39,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
   std::vector<ScanView> views(1);
   std::vector<VisiblePoint> visible;
   Cloud measured_W;
-  std::vector<Neighbour> nearest;
+  NearestReturns nearest_returns;
   std::vector<double> distances;
   play(recording, [&](const Scan& scan) {
     const MeasurementTime time = scan.mid_time();
@@ -69,20 +68,13 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     done("visibility");
     IntegrityReport report = integrity.run(map, visible, T_W_H, views);
     done("integrity");
-    const KdTree tree(filtered.hull_W, TreeUse::one_batch);
-    done("scan tree");
     measured_W.clear();
     for (const VisiblePoint& point : visible) {
       if (point.index < map.subset_H().size()) {
         measured_W.push_back((T_W_H * map.subset_H()[point.index].cast<double>()).cast<float>());
       }
     }
-    nearest.resize(measured_W.size());
-    tree.nearest(measured_W, std::numeric_limits<float>::infinity(), nearest);
-    distances.clear();
-    for (const Neighbour& neighbour : nearest) {
-      distances.push_back(std::sqrt(static_cast<double>(neighbour.squared_distance)));
-    }
+    nearest_returns.run(measured_W, views, filtered, distances);
     require(summarise_distances(distances).valid, "no metrics");
     done("metrics");
     report.step.solved = found.covariance.valid;
