@@ -248,7 +248,8 @@ void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& cova
   for (const RimRay& ray : rim_rays_) {
     if (ray.rim != last) {
       last = ray.rim;
-      const Eigen::Vector3d moved_H = T_W_H.linear().transpose() * shift.at(T_W_H * ray.rim->p_H.cast<double>());
+      const Eigen::Vector3d moved_H =
+          T_W_H.linear().transpose() * shift.at(T_W_H * ray.rim->p_H.cast<double>());
       lift = static_cast<float>(moved_H.z());
       aside = ray.rim->across_H.dot(moved_H.cast<float>());
       used = sharp(T_W_H.linear() * ray.rim->across_H.cast<double>());

@@ -89,8 +89,8 @@ class Integrity {
  public:
   static constexpr float kPlaneGate = 0.15F;  // m
   static constexpr float kBehind = 0.7F;      // m
-  /// Surfaces are looked at as far as this from the sensor, m: with lasers 2 deg apart the lines of a scan lie
-  /// 1.4 m apart there, and every fourth surfel still meets a ray.
+  /// Surfaces are looked at as far as this from the sensor, m: with lasers 2 deg apart the lines of a scan
+  /// lie 1.4 m apart there, and every fourth surfel still meets a ray.
   static constexpr double kSight = 40.0;
 
   /// `visible`: of map.probes_H(), at the pose T_W_H. Neither the step nor the patches are in the report yet.

@@ -8,8 +8,8 @@ namespace {
 
 // Points of a scan that approaches and scores use: at 500 the share that a pose explains has a sigma of 2 %.
 constexpr std::size_t kFew = 500;
-// A scan that leaves fewer points than this is a sparse sensor's, or one in rain: it needs more of them and has
-// the time, since its other steps are quick. A dense sensor leaves some 7,000.
+// A scan that leaves fewer points than this is a sparse sensor's, or one in rain: it needs more of them and
+// has the time, since its other steps are quick. A dense sensor leaves some 7,000.
 constexpr std::size_t kSparse = 5000;
 constexpr std::size_t kMostOfSparse = 8000;
 // A scan with fewer points than this on and around the hull is none to search with.

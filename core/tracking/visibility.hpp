@@ -1,10 +1,10 @@
 // Which map points can this scan be expected to see, if the hull is where the pose says? (ICD 3)
 //
 // A point is visible to a LiDAR if, seen from its mid-scan pose, it lies in a direction that the LiDAR looks
-// at, between min_range and the nearer of max_range and `farthest`; if it is front-most in a range image of the map
-// (cells of 1 deg, 0.4 m tolerance); and if the scan has no nearer return there. Seen by one LiDAR is enough.
-// Frames: map in H, result in L of the LiDAR that sees it; metres.
-// Thread rule: one owner, scratch is kept. Cost: a few ns a map occluder and candidate.
+// at, between min_range and the nearer of max_range and `farthest`; if it is front-most in a range image of
+// the map (cells of 1 deg, 0.4 m tolerance); and if the scan has no nearer return there. Seen by one LiDAR is
+// enough. Frames: map in H, result in L of the LiDAR that sees it; metres. Thread rule: one owner, scratch is
+// kept. Cost: a few ns a map occluder and candidate.
 #pragma once
 
 #include <cstdint>
