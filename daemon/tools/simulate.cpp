@@ -200,9 +200,9 @@ void add_simulate(CLI::App& app) {
       {"strongest", ReturnMode::strongest}, {"last", ReturnMode::last}, {"dual", ReturnMode::dual}};
   command
       ->add_option("--returns", simulation.return_mode,
-                   "Echoes that the LiDAR reports: strongest, last, dual")
+                   "Echoes that the LiDAR reports (default: strongest)")
       ->transform(CLI::Transformer(modes))
-      ->default_str("strongest");
+      ->option_text("{strongest,last,dual}");
   auto* frames = command
                      ->add_option("--frames", simulation.frames,
                                   "Length of the run at 10 Hz (default: the scenario's own)")

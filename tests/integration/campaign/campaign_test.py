@@ -111,12 +111,14 @@ class Campaign(unittest.TestCase):
         kept = self.folder / "kept"
         arguments = ["--seeds", "1", "--scenarios", "gale", "--frames", "20", "--keep", kept, "--methods", "auto"]
         self.run_campaign(*arguments)
+        first = self.log.read_text()
         self.log.unlink()
         done, rows = self.run_campaign(*arguments, "--markdown")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertFalse([c for c in self.calls() if "--out" in c])
         self.assertEqual(rows["gale", "auto"]["frames"], "20")
         self.assertTrue(done.stdout.startswith("| scenario"))
+        self.assertIn("--returns strongest", first)
         self.assertEqual([f.name for f in sorted(next(kept.iterdir()).glob("auto.*"))], ["auto.csv", "auto.toml"])
 
     def test_a_run_that_fails_is_told_and_the_others_go_on(self):
@@ -126,6 +128,12 @@ class Campaign(unittest.TestCase):
         self.assertIn("no such ship", done.stderr)
         self.assertIn(("calm", "auto"), rows)
         self.assertEqual(list(self.scratch.iterdir()), [])
+
+    def test_half_a_recording_is_not_kept(self):
+        kept = self.folder / "kept"
+        self.run_campaign("--seeds", "1", "--keep", kept, "--returns", "dual", FAIL="gale")
+        self.assertEqual(sorted(f.name.split("-")[0] for f in kept.iterdir()), ["calm", "other"])
+        self.assertEqual({f.name.split("-")[2] for f in kept.iterdir()}, {"dual"})
 
     def test_an_interrupt_ends_the_children_and_leaves_nothing(self):
         command = [CAMPAIGN, "--build", self.folder / "build", "--seeds", "1", "--jobs", "2"]
