@@ -37,9 +37,9 @@ struct SurfaceCount {
 
 /// One surfel and what the rays around it found.
 struct SurfelObservation {
-  Eigen::Vector3d p_W;  // where the pose puts the surfel
-  Eigen::Vector3d n_W;  // its normal
-  double offset;        // n . (return - p), m, mean: how far the surface really is along the normal
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  // where the pose puts the surfel
+  Eigen::Vector3d n_W = Eigen::Vector3d::Zero();  // its normal
+  double offset = 0.0;  // n . (return - p), m, mean: how far the surface really is along the normal
   double weight = 1.0;  // independent returns that the mean is worth
 };
 

@@ -199,8 +199,7 @@ void add_simulate(CLI::App& app) {
   const std::map<std::string, ReturnMode> modes = {
       {"strongest", ReturnMode::strongest}, {"last", ReturnMode::last}, {"dual", ReturnMode::dual}};
   command
-      ->add_option("--returns", simulation.return_mode,
-                   "Echoes that the LiDAR reports (default: strongest)")
+      ->add_option("--returns", simulation.return_mode, "Echoes that the LiDAR reports (default: strongest)")
       ->transform(CLI::Transformer(modes))
       ->option_text("{strongest,last,dual}");
   auto* frames = command
