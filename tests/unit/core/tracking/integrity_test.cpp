@@ -50,7 +50,6 @@ class IntegrityRun : public testing::Test {
     }
     std::vector<ScanView> views(1);
     views[0].rebuild(returns, Pose::Identity());
-    Integrity integrity;
     IntegrityReport report = integrity.run(map, visible, T_W_H, views);
     report.step = integrity.step(reference);
     return report;
@@ -65,6 +64,7 @@ class IntegrityRun : public testing::Test {
     return report.surfaces[static_cast<std::size_t>(surface)];
   }
 
+  Integrity integrity;
   const HullMap map;
   const Eigen::Vector3d reference{3.0, 3.0, -3.0};
 };
@@ -159,6 +159,27 @@ TEST_F(IntegrityOverADeck, WhatTheShipItselfHidesSaysNothingHoweverLittleBelowIt
   EXPECT_EQ(count(report, SurfaceClass::longitudinal).expected, 0U);
   EXPECT_EQ(count(report, SurfaceClass::horizontal).confirmed, planar(SurfaceClass::horizontal));
   EXPECT_EQ(report.expected, report.confirmed);
+}
+
+TEST_F(IntegrityRun, PatchesStandWhereTheBendPutsThem) {
+  // The reference point is 1 km away, so that a metre of bend lifts all of the corner by a metre.
+  const BendShape shape{1000.0, 2000.0};
+  const auto displaced = [&](double bend) {
+    integrity.forget();
+    IntegrityReport report;
+    for (int frame = 0; frame < 10; ++frame) {
+      report = look([](const Surfel& surfel, const Point& p) {
+        return surfel.surface == SurfaceClass::horizontal ? (p.z() + 0.1F) / p.z() : 1.0F;  // 0.1 m higher
+      });
+      report.step = {.solved = true};
+      integrity.weigh(map, Pose::Identity(), reference, shape, bend, report);
+    }
+    EXPECT_GT(report.patches.in_view, 2U);
+    return report.patches.displaced;
+  };
+  EXPECT_EQ(displaced(0.1), 0U);
+  EXPECT_GT(displaced(0.0), 0U);
+  EXPECT_GT(displaced(-0.1), 0U);
 }
 
 TEST_F(IntegrityRun, WhereNoRayEndsNothingIsExpected) {
