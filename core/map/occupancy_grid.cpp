@@ -26,7 +26,8 @@ OccupancyGrid::OccupancyGrid(std::span<const Point> occupied_H) {
   };
   size_ = {cells(0), cells(1), cells(2)};
   worth_.assign(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
-                    static_cast<std::size_t>(size_.z + 4 * kUp),
+                        static_cast<std::size_t>(size_.z + 4 * kUp) +
+                    kLanes - kHeights,
                 0);
   for (const Point& p : occupied_H) {
     mark(cell_of(p));
@@ -79,7 +80,7 @@ void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
                                           static_cast<std::size_t>(cy)) *
                                              static_cast<std::size_t>(depth) +
                                          static_cast<std::size_t>(cell.z + kUp)];
-    // Of the highest cell the lanes beyond kHeights are empty ones of the same column.
+    // The lanes beyond kHeights may be of the next column: nobody asks for them.
     for (std::size_t k = 0; k < kLanes; ++k) {
       bytes[k] = static_cast<std::uint8_t>(bytes[k] + lowest[k]);
     }

@@ -121,6 +121,16 @@ TEST(OccupancyGrid, AShiftByWholeCellsIsOneOfTheirNumbers) {
   }
 }
 
+TEST(OccupancyGrid, TheHighestShiftOfTheLastColumnIsWithinTheGrid) {
+  // A sanitizer's business: what is read beyond the grid's end is asked for by nobody.
+  const OccupancyGrid grid(Cloud{Point::Zero()});
+  const Index middle = grid.cell_of(Point::Zero());  // of an odd number of cells on every axis
+  const Index top{2 * middle.x, 2 * middle.y, 2 * middle.z + OccupancyGrid::kUp};
+  Worth worth{};
+  grid.correlate(std::vector<Index>{top}, 0, 0, worth);
+  EXPECT_EQ(worth, Worth{});
+}
+
 TEST(OccupancyGrid, PointsHoweverFarOutsideCountNothing) {
   const OccupancyGrid grid(Cloud{Point::Zero()});
   std::vector<Index> cells;
