@@ -10,6 +10,7 @@ namespace {
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 constexpr float kNothing = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 constexpr float kFrontMost = 0.4F;  // m (ICD 3)
 // A voxel's representative hides a disc as wide as the voxel; no more cells than this at point-blank range.
 constexpr int kLargestSplat = 5;
@@ -20,7 +21,7 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
                      std::span<const ScanView> views, std::span<const SensorConfig> sensors,
                      std::vector<VisiblePoint>& out) {
   out.clear();
-  seen_.assign(candidates_H.size(), false);
+  place_.assign(candidates_H.size(), kNowhere);
   for (std::size_t lidar = 0; lidar < views.size(); ++lidar) {
     const ScanView& view = views[lidar];
     const Pose T_L_H = view.T_W_L().inverse() * T_W_H;
@@ -31,15 +32,21 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
            {range, view.lowest_row() - kLargestSplat, view.highest_row() + kLargestSplat});
     sight(candidates_H, T_L_H, [&](std::size_t candidate, const Sightings& from_L, std::size_t i) {
       const float r2 = from_L.range2[i];
-      if (!(r2 <= range * range && r2 >= min_range * min_range) || seen_[candidate]) {
+      if (!(r2 <= range * range && r2 >= min_range * min_range)) {
         return;
       }
       const float r = std::sqrt(r2);
       const SphericalGrid::Cell cell = SphericalGrid::at(from_L.cell[i]);
       if (view.looks_at(cell) && r <= map_nearest_[cell.index()] + kFrontMost && !view.hidden(cell, r)) {
-        out.push_back(
-            {static_cast<std::uint32_t>(candidate), static_cast<std::uint16_t>(lidar), from_L.point(i)});
-        seen_[candidate] = true;
+        const VisiblePoint seen{static_cast<std::uint32_t>(candidate), static_cast<std::uint16_t>(lidar),
+                                from_L.point(i)};
+        std::uint32_t& place = place_[candidate];
+        if (place == kNowhere) {
+          place = static_cast<std::uint32_t>(out.size());
+          out.push_back(seen);
+        } else if (r2 < out[place].p_L.squaredNorm()) {
+          out[place] = seen;
+        }
       }
     });
   }

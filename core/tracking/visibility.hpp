@@ -19,7 +19,7 @@ namespace hulltrack {
 
 struct VisiblePoint {
   std::uint32_t index;  // into the candidates
-  std::uint16_t lidar;  // the first that sees it
+  std::uint16_t lidar;  // the nearest that sees it
   Point p_L;            // where it is expected, in that LiDAR's frame
 };
 
@@ -39,9 +39,9 @@ class Visibility {
   void splat(SphericalGrid::Cell cell, float r);
 
   double farthest_;
-  std::vector<float> cell_nearest_;  // per cell: of the occluders in it, squared, m^2
-  std::vector<float> map_nearest_;   // per cell that the LiDAR looks at: of the occluders that cover it, m
-  std::vector<bool> seen_;           // per candidate, by an earlier LiDAR
+  std::vector<float> cell_nearest_;   // per cell: of the occluders in it, squared, m^2
+  std::vector<float> map_nearest_;    // per cell that the LiDAR looks at: of the occluders that cover it, m
+  std::vector<std::uint32_t> place_;  // per candidate: in the result, if an earlier LiDAR sees it
 };
 
 }  // namespace hulltrack

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <map>
+
+#include <map>
 #include <random>
 
 #include "core/geometry/sighting.hpp"
@@ -161,6 +163,42 @@ TEST(Visibility, PointsBehindTheScansReturnsAreNotExpected) {
   for (const VisiblePoint& v : sight.visible) {
     EXPECT_LT(sight.map.subset_H()[v.index].y(), -2.0F);
   }
+}
+
+TEST(Visibility, APointIsAskedOfTheNearestLidarThatSeesIt) {
+  const AnalyticShip ship = AnalyticShip::bulk_carrier();
+  const HullMap map(ship.map(0.1, 1));
+  const std::vector sensors = {testing::looking_down({-9.0, -3.0, 21.0}),
+                               testing::looking_down({6.0, -3.0, 15.0})};
+  const auto seen_by = [&](std::span<const SensorConfig> some) {
+    std::vector<ScanView> views(some.size());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      FilteredScan filtered;
+      ScanFilter({}, {some[i]}, std::nullopt)
+          .run(testing::scan_ship(&ship, some[i], {}), testing::joints_at_rest(1.0), {}, filtered);
+      views[i].rebuild(filtered.returns_W[0], some[i].mount);
+    }
+    std::vector<VisiblePoint> visible;
+    Visibility(40.0).run(map, map.subset_H(), Pose::Identity(), views, some, visible);
+    return visible;
+  };
+  std::map<std::uint32_t, float> nearest;
+  for (const SensorConfig& sensor : sensors) {
+    for (const VisiblePoint& v : seen_by(std::span(&sensor, 1))) {
+      const auto [at, added] = nearest.emplace(v.index, v.p_L.norm());
+      at->second = std::min(at->second, v.p_L.norm());
+    }
+  }
+  const std::vector<VisiblePoint> both = seen_by(sensors);
+  EXPECT_EQ(both.size(), nearest.size());
+  std::size_t of_second = 0;
+  for (const VisiblePoint& v : both) {
+    ASSERT_TRUE(nearest.contains(v.index));
+    EXPECT_FLOAT_EQ(v.p_L.norm(), nearest[v.index]);
+    of_second += v.lidar;
+  }
+  EXPECT_GT(of_second, both.size() / 4);
+  EXPECT_LT(of_second, both.size());
 }
 
 TEST(Visibility, FieldOfViewIsWhereReturnsEverCameFrom) {
