@@ -95,11 +95,13 @@ void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
 
 /// Whether another part of the map hides a surfel from the sensor within the tolerance that visibility
 /// leaves: a deck the ship's side below its edge.
-bool is_behind_another(const HullMap& map, const Point& p_H, const Point& n_H, const Point& sensor_H) {
-  const Point to_sensor = (sensor_H - p_H).normalized();
-  for (float before = kHidden; before <= Integrity::kBehind; before += kHidden) {
-    const auto near = map.tree().nearest(p_H + before * to_sensor, kHidden);
-    if (near && std::abs(n_H.dot(map.cloud_H()[near->index] - p_H)) > kSameSurface) {
+bool is_behind_another(const HullMap& map, const Surfel& surfel, const Point& sensor_H) {
+  const Point to_sensor = (sensor_H - surfel.centre_H).normalized();
+  // Steps of kHidden from twice that on: what is nearer may be the surfel's own surface.
+  for (int step = 2; static_cast<float>(step) * kHidden < Integrity::kBehind + kHidden / 2.0F; ++step) {
+    const Point before = surfel.centre_H + static_cast<float>(step) * kHidden * to_sensor;
+    const auto near = map.tree().nearest(before, kHidden);
+    if (near && std::abs(surfel.normal_H.dot(map.cloud_H()[near->index] - surfel.centre_H)) > kSameSurface) {
       return true;
     }
   }
@@ -162,8 +164,7 @@ void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, co
     return;
   }
   if (nearest->depth < -kHidden &&
-      is_behind_another(map, map.subset_H()[point.index], surfel.normal_H,
-                        (T_W_H.inverse() * view.T_W_L().translation()).cast<float>())) {
+      is_behind_another(map, surfel, (T_W_H.inverse() * view.T_W_L().translation()).cast<float>())) {
     return;
   }
   const bool confirmed = std::abs(nearest->offset) <= kPlaneGate;
