@@ -84,6 +84,23 @@ TEST(HullTracker, FindsAMooredHullAndSaysSo) {
   }
 }
 
+TEST(HullTracker, ExpectsQ1OfThePointsThatItIsTakenOf) {
+  const auto metrics_within = [](double metric_range) {
+    TrackerConfig config = tracker_config();
+    config.health.metric_range = metric_range;
+    const AnalyticShip ship = AnalyticShip::bulk_carrier();
+    HullTracker tracker(config, {}, {sensor()}, testing::bulk_carrier_map());
+    return tracker.process(testing::scan_ship(&ship, sensor(), {}), testing::joints_at_rest(30.0), {})
+        .metrics;
+  };
+  const DistanceMetrics near = metrics_within(18.0);
+  const DistanceMetrics far = metrics_within(40.0);
+  ASSERT_TRUE(near.q1_expected && far.q1_expected);
+  EXPECT_LT(*near.q1_expected, 0.95 * *far.q1_expected) << "rays are denser near the sensor";
+  EXPECT_NEAR(near.q1 / *near.q1_expected, 1.0, 0.2);
+  EXPECT_NEAR(far.q1 / *far.q1_expected, 1.0, 0.2);
+}
+
 TEST(HullTracker, TellsTheMotionOfAHealthyHullAlone) {
   Track track;
   const TrackResult first = track.step(&track.ship(), {.T_W_H = displaced({0, 0, -0.05})});
