@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace hulltrack {
 namespace {
@@ -45,16 +46,20 @@ constexpr double kSharedGain = 0.1;
 constexpr double kCommonShift = 0.0005;              // m
 constexpr double kCommonTurn = kCommonShift / 20.0;  // rad
 
-BendShape bend_shape(const Eigen::Vector3d& reference_H, const HullMap& map) {
-  return {reference_H.x(), map.length()};
-}
-
-/// All of `cloud`, or `most` points of it.
+/// All of `cloud`, or one point of each of `most` stretches of it. Not the same of every stretch: in the
+/// order of firing that could be one laser alone.
 void take_evenly(const Cloud& cloud, std::size_t most, Cloud& out) {
+  if (cloud.size() <= most) {
+    out = cloud;
+    return;
+  }
   out.clear();
-  const std::size_t count = std::min(most, cloud.size());
-  for (std::size_t i = 0; i < count; ++i) {
-    out.push_back(cloud[i * cloud.size() / count]);
+  const double stretch = static_cast<double>(cloud.size()) / static_cast<double>(most);
+  double golden = 0.0;  // multiples of the golden ratio fill 0..1 evenly
+  for (std::size_t i = 0; i < most; ++i) {
+    out.push_back(cloud[static_cast<std::size_t>(stretch * (static_cast<double>(i) + golden))]);
+    golden += std::numbers::phi - 1.0;
+    golden -= std::floor(golden);
   }
 }
 
@@ -66,11 +71,11 @@ PoseFinder::PoseFinder(const TrackerConfig& config, const HullMap& map)
       voxel_filter_(config.registration.voxel_size),
       point_icp_({config.registration.max_correspondence_distance, config.registration.max_iterations,
                   config.registration.translation_epsilon, config.registration.rotation_epsilon}),
-      plane_icp_({.max_iterations = config.registration.max_iterations},
-                 bend_shape(config.hull.reference_point, map)),
+      bend_shape_{config.hull.reference_point.x(), map.length()},
+      plane_icp_({.max_iterations = config.registration.max_iterations}, bend_shape_),
       search_(config.hull.reference_point, map),
       bend_(map.length()),
-      shared_(kSharedAtFirst) {}
+      shared_{kSharedAtFirst, kSharedAtFirst} {}
 
 void PoseFinder::thin(const Cloud& hull_W) {
   if (config_.registration.method == RegistrationMethod::point_to_point) {
@@ -80,17 +85,16 @@ void PoseFinder::thin(const Cloud& hull_W) {
     for (const Point& p : hull_W) {
       askew_.push_back(kAskew * p);
     }
-    const std::span<const std::uint32_t> selected = voxel_filter_.select(askew_);
-    if (selected.size() < kSparse) {
-      take_evenly(hull_W, kMostOfSparse, thinned_W_);
-    } else {
-      thinned_W_.clear();
-      for (const std::uint32_t i : selected) {
-        thinned_W_.push_back(hull_W[i]);
-      }
+    thinned_W_.clear();
+    for (const std::uint32_t i : voxel_filter_.select(askew_)) {
+      thinned_W_.push_back(hull_W[i]);
     }
   }
   take_evenly(thinned_W_, kFew, few_W_);
+  is_sparse_ = config_.registration.method == RegistrationMethod::automatic && thinned_W_.size() < kSparse;
+  if (is_sparse_) {
+    take_evenly(hull_W, kMostOfSparse, thinned_W_);
+  }
 }
 
 PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const HealthMemory& memory) {
@@ -117,7 +121,7 @@ void PoseFinder::learn(MeasurementTime time, const PlaneIcpResult& found) {
   if (!found.icp.converged || !found.covariance.valid) {
     return;
   }
-  shared_ += kSharedGain * (found.covariance.shared - shared_);
+  shared_[is_sparse_] += kSharedGain * (found.covariance.shared - shared_[is_sparse_]);
   if (found.covariance.bend_sigma > 0.0) {
     bend_.update(time, found.bend + found.covariance.bend_off, found.covariance.bend_sigma);
   }
@@ -128,7 +132,7 @@ Matrix6 PoseFinder::covariance(const PlaneCovariance& fit) const {
   Twist common;
   common << Eigen::Vector3d::Constant(kCommonTurn), Eigen::Vector3d::Constant(kCommonShift);
   Matrix6 covariance =
-      std::max(1.0, shared_) * fit.pose + sigma * sigma * fit.by_bend * fit.by_bend.transpose();
+      std::max(1.0, shared_[is_sparse_]) * fit.pose + sigma * sigma * fit.by_bend * fit.by_bend.transpose();
   covariance.diagonal() += common.cwiseAbs2();
   return covariance;
 }

@@ -9,6 +9,7 @@
 // Thread rule: one owner. Cost: 2 ms a frame when following, up to 10 ms more while searching.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "core/filter/voxel_filter.hpp"
@@ -43,6 +44,7 @@ class PoseFinder {
   /// Learns from a frame that the scan did not contradict: the bend, and how much residuals share.
   void learn(MeasurementTime time, const PlaneIcpResult& found);
   [[nodiscard]] const Bend& bend() const { return bend_.now(); }
+  [[nodiscard]] const BendShape& bend_shape() const { return bend_shape_; }
   /// Of the answer of find(), about its centre in H.
   [[nodiscard]] Matrix6 covariance(const PlaneCovariance& fit) const;
 
@@ -68,13 +70,17 @@ class PoseFinder {
   const HullMap* map_;
   VoxelFilter voxel_filter_;
   PointToPointIcp point_icp_;
+  BendShape bend_shape_;
   PointToPlaneIcp plane_icp_;
   HullSearch search_;
   BendFilter bend_;
-  double shared_;  // mean of PlaneCovariance::shared
+  /// Means of PlaneCovariance::shared, of scans that were thinned and of sparse ones, whose points are
+  /// closer.
+  std::array<double, 2> shared_;
 
-  Cloud askew_;  // the scan in the voxels' axes
-  Cloud thinned_W_;
+  Cloud askew_;      // the scan in the voxels' axes
+  Cloud thinned_W_;  // all of a sparse scan
+  bool is_sparse_ = false;
   Cloud few_W_;                     // of the thinned scan, evenly taken
   std::optional<Pose> challenger_;  // T_H_W, found by the last frame, explains more than its pose
   std::optional<HealthMemory::FollowedPose> last_seen_;  // since the last re-acquire edge
