@@ -3,6 +3,7 @@
 #include "core/filter/voxel_filter.hpp"
 #include "core/geometry/box.hpp"
 #include "core/map/surfels.hpp"
+#include "core/tracking/expected_distance.hpp"
 #include "core/tracking/integrity.hpp"
 #include "core/tracking/nearest_returns.hpp"
 #include "core/tracking/pose_covariance.hpp"
@@ -31,8 +32,8 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
   const Eigen::Vector3d& reference_H = config.tracker.hull.reference_point;
   const ScanFilter filter(config.machine, sensor_configs(config.lidars), std::nullopt);
   PoseFinder finder(config.tracker, map);
-  PointToPlaneIcp icp({}, {reference_H.x(), map.length()});
-  Visibility visibility(config.tracker.health.metric_range);
+  PointToPlaneIcp icp({}, finder.bend_shape());
+  Visibility visibility(std::max(Integrity::kSight, config.tracker.health.metric_range));
   Integrity integrity;
   HealthMemory memory;
   FilteredScan filtered;
@@ -40,6 +41,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
   std::vector<VisiblePoint> visible;
   Cloud measured_W;
   NearestReturns nearest_returns;
+  ExpectedDistance expected_distance;
   std::vector<double> distances;
   play(recording, [&](const Scan& scan) {
     const MeasurementTime time = scan.mid_time();
@@ -68,6 +70,10 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     done("visibility");
     IntegrityReport report = integrity.run(map, visible, T_W_H, views);
     done("integrity");
+    const auto range = static_cast<float>(config.tracker.health.metric_range);
+    std::erase_if(visible, [&](const VisiblePoint& p) { return p.p_L.squaredNorm() > range * range; });
+    require(expected_distance.q1(map, visible, T_W_H, views).has_value(), "no expected Q1");
+    done("expect");
     measured_W.clear();
     for (const VisiblePoint& point : visible) {
       if (point.index < map.subset_H().size()) {
@@ -79,7 +85,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     done("metrics");
     report.step.solved = found.covariance.valid;
     report.step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
-    integrity.weigh(map, T_W_H, T_W_H * reference_H, report);
+    integrity.weigh(map, T_W_H, T_W_H * reference_H, finder.bend_shape(), finder.bend().d, report);
     done("patches");
     require(!finder.rival(found.icp.T_target_source), "there is a rival");
     done("challenge");
