@@ -7,9 +7,8 @@
 //   tracking   every check passed, now and (unless tracking already) in recover_frames frames in a row
 //   degraded   a pose, but: Q1 above its limit for tracking, not converged, not constrained, implausible, or
 //              recovering
-//   lost       no pose to trust: none found, too few matches, Q1 above its limit for lost, contradicted by
-//   the
-//              scan
+//   lost       no pose to trust: none found, too few matches, Q1 above its limit for lost, contradicted
+//              by the scan
 //   acquiring  instead of degraded and lost while the hull has to be searched for
 // A scan may look the same one hatch farther along the quay, so a pose is believed only if it follows from an
 // earlier one without a gap in which the hull could have moved by kUnseen, or if the whole berth was searched
