@@ -137,6 +137,11 @@ void Integrity::weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector
                       const BendShape& shape, double bend, IntegrityReport& report) {
   if (evidence_.patches() != map.patches()) {
     evidence_.reset(map.patches());
+    for (const RimPoint& rim : map.rims()) {
+      if (rim.patch != Surfel::kNoPatch) {
+        evidence_.mark_rim(rim.patch);
+      }
+    }
   }
   evidence_.begin_frame();
   if (report.step.solved && (judge_pose_integrity(report).faults & fault::contradicted) == 0) {

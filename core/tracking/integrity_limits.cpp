@@ -103,9 +103,11 @@ IntegrityFinding judge_integrity(const IntegrityReport& report) {
   const PatchReport& patches = report.patches;
   if (patches.displaced + patches.displaced_rims >= kFewestDisplaced) {
     finding.faults = fault::contradicted;
-    finding.reason =
-        format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere, by %.2f m",
-                    patches.displaced, patches.solid, patches.median_offset);
+    finding.reason = format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere",
+                                 patches.displaced, patches.solid);
+    if (patches.median_offset > 0.0) {
+      finding.reason += format_text(", by %.2f m", patches.median_offset);
+    }
   } else if (!patches.decided) {
     finding.undecided = true;
     finding.reason = format_text("is it the map's ship? %u of %u surfaces in view are judged", patches.judged,

@@ -28,6 +28,7 @@ constexpr double kShareToDecide = 0.75;
 
 void PatchEvidence::reset(std::uint32_t patches) {
   patches_.assign(patches, {});
+  is_rim_.assign(patches, false);
   verdicts_.assign(patches, {});
   strips_.clear();
   frame_ = 0;
@@ -129,6 +130,9 @@ void PatchEvidence::judge_again(std::uint32_t patch) {
   if (plane.state == PatchState::displaced) {
     verdict.off_plane = true;
     verdict.by = static_cast<float>(std::abs(plane.offset));
+  } else if (plane.state == PatchState::gone && is_rim_[patch]) {
+    verdict.off_plane = true;
+    verdict.by = 0.0F;
   } else if (plane.state != PatchState::unknown && plane.state != PatchState::scattered) {
     verdict.off_plane = false;
   }
@@ -142,7 +146,7 @@ void PatchEvidence::judge_again(std::uint32_t patch) {
 
 PatchReport PatchEvidence::report() {
   PatchReport report;
-  std::vector<float> displaced;
+  std::vector<float> offsets;
   for (std::uint32_t i = 0; i < patches(); ++i) {
     const Verdict& verdict = verdicts_[i];
     if (patches_[i].last_frame == frame_) {
@@ -152,8 +156,11 @@ PatchReport PatchEvidence::report() {
     }
     const bool elsewhere = verdict.off_plane || verdict.aside;
     if (elsewhere) {
-      displaced.push_back(verdict.by);
-      report.displaced_rims += strips_.contains(i) ? 1 : 0;
+      ++report.displaced;
+      report.displaced_rims += is_rim_[i] ? 1 : 0;
+      if (verdict.by > 0.0F) {
+        offsets.push_back(verdict.by);
+      }
     }
     report.solid += elsewhere || verdict.state == PatchState::in_place ? 1 : 0;
   }
@@ -161,10 +168,9 @@ PatchReport PatchEvidence::report() {
   decided_ = decided_ || (frames_ >= kFramesToDecide && report.judged >= kFewestToDecide &&
                           report.judged >= kShareToDecide * report.in_view);
   report.decided = decided_;
-  report.displaced = static_cast<std::uint32_t>(displaced.size());
-  if (!displaced.empty()) {
-    const auto middle = displaced.begin() + static_cast<std::ptrdiff_t>(displaced.size() / 2);
-    std::nth_element(displaced.begin(), middle, displaced.end());
+  if (!offsets.empty()) {
+    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+    std::nth_element(offsets.begin(), middle, offsets.end());
     report.median_offset = static_cast<double>(*middle);
   }
   return report;

@@ -4,7 +4,8 @@
 // ended, once the pose's own remaining error is taken off. From it:
 //   in place    coherent and within kDisplaced of its plane
 //   displaced   coherent and farther off: a surface like the mapped one stands elsewhere - another ship
-//   gone        most rays go clearly through: a cover that moved, a fitting that was removed
+//   gone        most rays go clearly through: a cover that moved, a fitting that was removed; a coaming is
+//               neither, so that a rim which is gone stands elsewhere too
 //   scattered   no one surface: cargo against a wall, things on deck, dust
 //   covered     a rim that is higher and goes on over the hold: a cover lies on it
 // Only displaced ones speak against the ship. Hull frame, metres. State: kBins + 2 floats a patch, forgotten
@@ -38,7 +39,7 @@ struct PatchReport {
   std::uint32_t solid = 0;           // in place or displaced, seen in this frame or remembered
   std::uint32_t displaced = 0;       // part of the solid
   std::uint32_t displaced_rims = 0;  // part of the displaced
-  double median_offset = 0.0;        // of the displaced ones, absolute, m
+  double median_offset = 0.0;        // of those of them whose offset is known, absolute, m
   bool decided = false;              // since reset() enough of what was in view has been judged
 };
 
@@ -48,6 +49,8 @@ class PatchEvidence {
 
   /// Forgets everything; `patches` of the map.
   void reset(std::uint32_t patches);
+  /// This patch is a piece of a coaming's top.
+  void mark_rim(std::uint32_t patch) { is_rim_[patch] = true; }
   [[nodiscard]] std::uint32_t patches() const { return static_cast<std::uint32_t>(patches_.size()); }
 
   void begin_frame() { ++frame_; }
@@ -83,12 +86,13 @@ class PatchEvidence {
   Patch& touch(std::uint32_t patch);
 
   std::vector<Patch> patches_;
+  std::vector<bool> is_rim_;
   std::unordered_map<std::uint32_t, Strip> strips_;  // of the patches that are rims
   struct Verdict {
     PatchState state = PatchState::unknown;  // as of the last frame that saw the patch
     bool off_plane = false;                  // displaced, until it is seen in place, gone or covered
     bool aside = false;                      // a rim across its length, until it is seen in place
-    float by = 0.0F;                         // m
+    float by = 0.0F;                         // m; 0 = unknown
   };
   void judge_again(std::uint32_t patch);
 

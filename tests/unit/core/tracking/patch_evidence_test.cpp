@@ -90,6 +90,11 @@ TEST_F(OnePatch, DisplacedOnceIsRememberedUntilSeenInPlace) {
 
 class OneRim : public OnePatch {
  protected:
+  OneRim() { forget(); }
+  void forget() {
+    evidence.reset(1);
+    evidence.mark_rim(0);
+  }
   /// A frame of rays over a coaming's top that stands `aside` of its place across, at its mapped height.
   void see_strip(float aside, int n) {
     evidence.begin_frame();
@@ -114,7 +119,7 @@ TEST_F(OneRim, AsideByADecimetreIsADisplacedRimThoughItsHeightIsRight) {
   EXPECT_EQ(report.solid, 1U);
   EXPECT_TRUE(evidence.judge_strip(0).in_place());
 
-  evidence.reset(1);
+  forget();
   EXPECT_FALSE(evidence.judge_strip(0).known) << "forgotten";
   see_strip(0.12F, 300);
   report = evidence.report();
@@ -136,6 +141,25 @@ TEST_F(OneRim, AsideOnceIsRememberedUntilSeenInPlace) {
     (void)evidence.report();
   }
   EXPECT_EQ(evidence.report().displaced_rims, 0U);
+}
+
+TEST_F(OneRim, GoneFromItsPlaceItStandsElsewhere) {
+  evidence.begin_frame();
+  see(0.0, 10);
+  for (int i = 0; i < 40; ++i) {
+    evidence.add_through(0);
+  }
+  EXPECT_EQ(state(), PatchState::gone);
+  PatchReport report = evidence.report();
+  EXPECT_EQ(report.displaced, 1U);
+  EXPECT_EQ(report.displaced_rims, 1U);
+  EXPECT_EQ(report.median_offset, 0.0) << "nobody knows where";
+  for (int frame = 0; frame < 20; ++frame) {
+    evidence.begin_frame();
+    see(0.0, 60);
+    report = evidence.report();
+  }
+  EXPECT_EQ(report.displaced, 0U);
 }
 
 TEST_F(OnePatch, ASurfaceThatIsDisplacedAndNoRimIsCountedOnce) {
