@@ -4,26 +4,23 @@
 #include <cmath>
 #include <limits>
 
+#include "core/map/surfels.hpp"
+
 namespace hulltrack {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
-constexpr float kBesides = 0.3F;  // m in the plane: as far as a surfel is known to be flat
 
-/// Squared distance from a surfel to where the nearest ray meets its plane, m^2; kNone beyond kBesides.
+/// Squared distance from a surfel to where the nearest ray meets its plane, m^2; kNone beyond kSurfelRadius,
+/// as far as it is known to be flat.
 float nearest_ray2(const ScanView& view, const Point& p_L, const Point& n_L) {
   const float plane = n_L.dot(p_L);
-  const SphericalGrid::Cell centre = SphericalGrid::cell(p_L);
   float nearest2 = kNone;
-  for (int dr = -1; dr <= 1; ++dr) {
-    for (int dc = -1; dc <= 1; ++dc) {
-      for (const Point& returned : view.returns(centre.moved(dr, dc))) {
-        const Point met = plane / n_L.dot(returned) * returned;
-        nearest2 = std::min(nearest2, (met - p_L).squaredNorm());  // not if it is parallel: no number
-      }
-    }
-  }
-  return nearest2 <= kBesides * kBesides ? nearest2 : kNone;
+  view.visit_around(SphericalGrid::cell(p_L), [&](const Point& returned) {
+    const Point met = plane / n_L.dot(returned) * returned;
+    nearest2 = std::min(nearest2, (met - p_L).squaredNorm());  // not if it is parallel: no number
+  });
+  return nearest2 <= kSurfelRadius * kSurfelRadius ? nearest2 : kNone;
 }
 
 }  // namespace

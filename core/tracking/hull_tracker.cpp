@@ -69,7 +69,6 @@ struct HullTracker::Impl {
   [[nodiscard]] PlaneStep certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
                                        TrackResult& result) const;
   void look(const Joints& joints_mid);
-  void keep_within_metric_range();
   DistanceMetrics measure(const Pose& T_W_H);
   IntegrityReport inspect(const Pose& T_W_H);
   void examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
@@ -170,7 +169,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
   IntegrityReport report = inspect(result.T_W_H);
-  keep_within_metric_range();
+  keep_within(config.health.metric_range, visible);  // integrity looks farther than distances are taken
   std::optional<double> q1_expected;
   if (config.metrics_scope != MetricsScope::whole_map) {  // it speaks of what is in view
     q1_expected = expected_distance.q1(*map, visible, result.T_W_H, views);
@@ -227,13 +226,6 @@ void HullTracker::Impl::look(const Joints& joints_mid) {
   }
 }
 
-/// Distances are those of the visible points that a site wants compared; integrity looks farther.
-void HullTracker::Impl::keep_within_metric_range() {
-  const auto range = static_cast<float>(config.health.metric_range);
-  std::erase_if(visible, [&](const VisiblePoint& p) { return !(p.p_L.squaredNorm() <= range * range); });
-}
-
-/// Subset: of what is left of the points that integrity looked at.
 DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H) {
   const Eigen::Matrix3f R = T_W_H.linear().cast<float>();
   const Point t = T_W_H.translation().cast<float>();
@@ -245,7 +237,7 @@ DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H) {
   } else {
     if (full) {
       visibility.run(*map, map->cloud_H(), T_W_H, views, scan_filter.sensors(), visible);
-      keep_within_metric_range();
+      keep_within(config.health.metric_range, visible);
     }
     const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
     for (const VisiblePoint& point : visible) {

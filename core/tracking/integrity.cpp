@@ -4,11 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/map/surfels.hpp"
+
 namespace hulltrack {
 namespace {
 
-constexpr float kBesides = 0.3F;  // m in the plane: as far as a surfel is known to be flat
-constexpr float kAround = 0.2F;   // m in the plane: half a subset voxel; returns in it are the surfel's own
+constexpr float kAround = 0.2F;  // m in the plane: half a subset voxel; returns in it are the surfel's own
 constexpr float kSameSurface = 0.06F;  // m: three sigma of a return beside the nearest one
 constexpr float kHidden = 0.1F;        // m before a surfel: from there on something else was seen
 constexpr float kGrazing = 0.1F;       // sine of 6 deg: below it a range says little about the plane
@@ -21,31 +22,25 @@ constexpr float kRaised = 0.03F;       // m: a rim that may be covered
 // Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
 constexpr float kSharedError = 1.0F / 16.0F;
 
-/// Every ray that meets the plane within kBesides of the surfel and was not stopped clearly before it.
+/// Every ray that meets the plane within kSurfelRadius of the surfel, as far as it is known to be flat, and
+/// was not stopped clearly before it.
 void collect_rays(const ScanView& view, const Point& p_L, const Point& n_L, std::vector<RayEnd>& rays) {
   rays.clear();
-  const SphericalGrid::Cell centre = SphericalGrid::cell(p_L);
   const float plane = n_L.dot(p_L);
-  for (int dr = -1; dr <= 1; ++dr) {
-    for (int dc = -1; dc <= 1; ++dc) {
-      for (const Point& s : view.returns(centre.moved(dr, dc))) {
-        const float along = n_L.dot(s);
-        const float range = s.norm();
-        if (std::abs(along) < kGrazing * range) {
-          continue;
-        }
-        const float t = plane / along;  // the plane is met at t * s
-        const float besides2 = (t * s - p_L).squaredNorm();
-        if (besides2 < kBesides * kBesides) {
-          const float depth = (1.0F - t) * range;
-          if (depth >=
-              -Integrity::kBehind) {  // else stopped before it, by a drop of rain say: it says nothing
-            rays.push_back({besides2, along - plane, depth});
-          }
-        }
-      }
+  view.visit_around(SphericalGrid::cell(p_L), [&](const Point& s) {
+    const float along = n_L.dot(s);
+    const float range = s.norm();
+    if (std::abs(along) < kGrazing * range) {
+      return;
     }
-  }
+    const float t = plane / along;  // the plane is met at t * s
+    const float besides2 = (t * s - p_L).squaredNorm();
+    const float depth = (1.0F - t) * range;
+    const bool stopped = depth < -Integrity::kBehind;  // before it, by a drop of rain say: it says nothing
+    if (besides2 < kSurfelRadius * kSurfelRadius && !stopped) {
+      rays.push_back({besides2, along - plane, depth});
+    }
+  });
 }
 
 /// Mean offset and worth of the returns that lie on the same surface as the nearest ray's.
@@ -80,17 +75,12 @@ struct RimAxes {
 template <typename Visit>
 void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
   const float plane = axes.n_L.dot(axes.p_L);
-  const SphericalGrid::Cell centre = SphericalGrid::cell(axes.p_L);
-  for (int dr = -1; dr <= 1; ++dr) {
-    for (int dc = -1; dc <= 1; ++dc) {
-      for (const Point& ray : view.returns(centre.moved(dr, dc))) {
-        const float down = axes.n_L.dot(ray);
-        if (std::abs(down) > kGrazing * ray.norm()) {
-          visit(ray, Point(plane / down * ray), down - plane);
-        }
-      }
+  view.visit_around(SphericalGrid::cell(axes.p_L), [&](const Point& ray) {
+    const float down = axes.n_L.dot(ray);
+    if (std::abs(down) > kGrazing * ray.norm()) {
+      visit(ray, Point(plane / down * ray), down - plane);
     }
-  }
+  });
 }
 
 /// Whether another part of the map hides a surfel from the sensor within the tolerance that visibility

@@ -47,6 +47,18 @@ class ScanView {
   /// A point of W in L.
   [[nodiscard]] Point seen(const Point& p_W) const { return R_L_W_ * p_W + t_L_W_; }
 
+  /// Calls visit(return in L) for those in a cell and the eight around it.
+  template <typename Visit>
+  void visit_around(SphericalGrid::Cell cell, Visit&& visit) const {
+    for (int dr = -1; dr <= 1; ++dr) {
+      for (int dc = -1; dc <= 1; ++dc) {
+        for (const Point& returned : returns(cell.moved(dr, dc))) {
+          visit(returned);
+        }
+      }
+    }
+  }
+
   [[nodiscard]] bool looks_at(SphericalGrid::Cell cell) const {
     return cell.row >= lowest_row_ && cell.row <= highest_row_ &&
            columns_seen_[static_cast<std::size_t>(cell.column)];

@@ -17,6 +17,11 @@ constexpr int kLargestSplat = 5;
 
 }  // namespace
 
+void keep_within(double range, std::vector<VisiblePoint>& visible) {
+  const auto most = static_cast<float>(range);
+  std::erase_if(visible, [&](const VisiblePoint& p) { return !(p.p_L.squaredNorm() <= most * most); });
+}
+
 void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, const Pose& T_W_H,
                      std::span<const ScanView> views, std::span<const SensorConfig> sensors,
                      std::vector<VisiblePoint>& out) {

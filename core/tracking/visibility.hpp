@@ -23,6 +23,9 @@ struct VisiblePoint {
   Point p_L;            // where it is expected, in that LiDAR's frame
 };
 
+/// Leaves out the points that are farther from their LiDAR than `range`, m.
+void keep_within(double range, std::vector<VisiblePoint>& visible);
+
 class Visibility {
  public:
   /// `farthest`: m from the sensor.

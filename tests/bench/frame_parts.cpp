@@ -70,8 +70,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     done("visibility");
     IntegrityReport report = integrity.run(map, visible, T_W_H, views);
     done("integrity");
-    const auto range = static_cast<float>(config.tracker.health.metric_range);
-    std::erase_if(visible, [&](const VisiblePoint& p) { return p.p_L.squaredNorm() > range * range; });
+    keep_within(config.tracker.health.metric_range, visible);
     require(expected_distance.q1(map, visible, T_W_H, views).has_value(), "no expected Q1");
     done("expect");
     measured_W.clear();
