@@ -46,7 +46,8 @@ class Verdict:
     false: np.ndarray       # healthy and must not be
     gross: np.ndarray
     accurate: np.ndarray    # healthy, and it is the ship of the map: error and NEES count
-    error: np.ndarray       # at the reference point, m
+    there: np.ndarray       # the ship of the map lies inside the envelope, whatever health says
+    error: np.ndarray       # at the reference point, m; NaN without a pose
     turn_deg: np.ndarray
     nees: np.ndarray        # NaN without covariance
     ms: np.ndarray
@@ -175,6 +176,11 @@ def away_rows(truth, limits, frames_t_ns, blind, period_ns):
     return moving | outside | np.isin(nearest, numbers[blind]), outside
 
 
+def within(error, turn_deg):
+    """Which poses are near enough to be healthy; where there is none it is not."""
+    return (error <= FALSE_ERROR_M) & (turn_deg <= FALSE_TURN_DEG)
+
+
 def judge(frames, truth, limits, mapped, pcap=None):
     """Verdict on one replay. `frames`, `truth`: read_table(); `mapped`: the ship of the map lies there."""
     t_ns = frames["t_ns"]
@@ -190,9 +196,9 @@ def judge(frames, truth, limits, mapped, pcap=None):
     gone = np.zeros(len(t_ns), dtype=bool)
     for begin, end in spells(outside, truth["t_ns"]):
         gone |= (t_ns > begin + NOTICE_S * 1e9) & ((end is None) | (t_ns < (end or 0)))
-    within = (error <= FALSE_ERROR_M) & (turn_deg <= FALSE_TURN_DEG)  # false without a pose
+    near = within(error, turn_deg)
     roughly = (error <= GROSS_ERROR_M) & (turn_deg <= GROSS_TURN_DEG)
-    false = healthy & ~(within & ~gone & mapped)
+    false = healthy & ~(near & ~gone & mapped)
 
     notice, back, bend_error = [], [], []
     if mapped:
@@ -207,8 +213,9 @@ def judge(frames, truth, limits, mapped, pcap=None):
             true_bend = np.interp(t_ns[last] - zero, truth["t_ns"] - zero, truth["bend"])
             bend_error = [abs(frames["bend"][last] - true_bend)]
     return Verdict(could=mapped & ~away[row] & (t_ns - t_ns[0] >= START_S * 1e9), healthy=healthy, false=false,
-                   gross=healthy & ~(roughly & ~gone & mapped), accurate=healthy & mapped, error=error,
-                   turn_deg=turn_deg, nees=normalised_squares(frames, twists), ms=frames["ms"],
+                   gross=healthy & ~(roughly & ~gone & mapped), accurate=healthy & mapped,
+                   there=mapped & ~outside[row], error=error, turn_deg=turn_deg,
+                   nees=normalised_squares(frames, twists), ms=frames["ms"],
                    notice=[s for s in notice if s is not None], back=[s for s in back if s is not None],
                    bend_error=bend_error)
 
@@ -217,18 +224,29 @@ def percent(part, whole):
     return 100.0 * np.count_nonzero(part) / np.count_nonzero(whole) if np.any(whole) else None
 
 
+def of(values, figure, *arguments):
+    return float(figure(values, *arguments)) if len(values) else None
+
+
+def root_mean_square(values):
+    return np.sqrt(np.mean(np.square(values)))
+
+
+def summary_of_any_pose(v):
+    """How good the method's poses are, whether or not anybody would be told to believe them."""
+    posed = v.there & np.isfinite(v.error)
+    error, turn = v.error[posed], v.turn_deg[posed]
+    return {"there": np.count_nonzero(v.there), "no_pose_%": percent(v.there & ~posed, v.there),
+            "off_%": percent(posed & ~within(v.error, v.turn_deg), posed),
+            "any_p50_m": of(error, np.median), "any_p95_m": of(error, np.percentile, 95),
+            "any_p50_deg": of(turn, np.median), "any_p95_deg": of(turn, np.percentile, 95)}
+
+
 def summary(verdict):
     """The figures of a verdict by column of the table; None = there is none."""
     v = verdict
     error_mm, turn, nees = 1e3 * v.error[v.accurate], v.turn_deg[v.accurate], v.nees[v.accurate]
     nees, ms = nees[~np.isnan(nees)], v.ms[~np.isnan(v.ms)]
-
-    def of(values, figure, *arguments):
-        return float(figure(values, *arguments)) if len(values) else None
-
-    def root_mean_square(values):
-        return np.sqrt(np.mean(np.square(values)))
-
     return {"frames": len(v.could), "could": np.count_nonzero(v.could), "avail_%": percent(v.could & v.healthy, v.could),
             "healthy": np.count_nonzero(v.healthy), "false": np.count_nonzero(v.false),
             "gross": np.count_nonzero(v.gross), "rms_mm": of(error_mm, root_mean_square),
@@ -238,4 +256,4 @@ def summary(verdict):
             "nees": of(nees, np.mean),
             "band_%": percent((nees >= NEES_BAND[0]) & (nees <= NEES_BAND[1]), nees == nees),
             "bend_mm": 1e3 * max(v.bend_error) if v.bend_error else None,
-            "ms_p50": of(ms, np.median), "ms_p99": of(ms, np.percentile, 99)}
+            "ms_p50": of(ms, np.median), "ms_p99": of(ms, np.percentile, 99), **summary_of_any_pose(v)}

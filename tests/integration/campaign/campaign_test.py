@@ -96,6 +96,22 @@ class Campaign(unittest.TestCase):
         self.assertIn("auto: 0 false healthy frames among 240 healthy ones of 330 frames", done.stdout)
         self.assertEqual(list(self.scratch.iterdir()), [])
 
+    def test_the_methods_stand_side_by_side_with_the_error_of_every_pose(self):
+        done, rows = self.run_campaign("--seeds", "1", WRONG="gale1,point_to_point")
+        self.assertAlmostEqual(float(rows["gale", "point_to_point"]["off_%"]), 2.0)
+        self.assertAlmostEqual(float(rows["gale", "auto"]["off_%"]), 0.0)
+        table = done.stdout[done.stdout.index("Error of every"):].split("\n\n")[1]
+        above, header, *lines = table.splitlines()
+        figures = ["no_pose_%", "off_%", "p50_m", "p95_m", "p50_deg", "p95_deg"]
+        self.assertEqual(header.split(), ["scenario", "there", *figures, *figures])
+        # Each method's name begins where its columns do.
+        self.assertEqual([above.index("auto"), above.index("point_to_point")],
+                         [header.index("no_pose_%"), header.rindex("no_pose_%")])
+        exact = ["0.0", "0.0", "0.002", "0.002", "0.000", "0.000"]
+        self.assertEqual(lines[0].split(), ["calm", "30", *exact, *exact])
+        self.assertEqual(lines[1].split(), ["gale", "50", *exact, "0.0", "2.0", *exact[2:]])
+        self.assertEqual([line.split()[0] for line in lines[2:]], ["all", "all"])  # another ship is not there
+
     def test_a_false_healthy_frame_of_the_first_method_fails_the_campaign(self):
         done, rows = self.run_campaign("--seeds", "2", WRONG="gale2,auto")
         self.assertEqual(done.returncode, 1)
@@ -117,6 +133,7 @@ class Campaign(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertFalse([c for c in self.calls() if "--out" in c])
         self.assertEqual(rows["gale", "auto"]["frames"], "20")
+        self.assertIn("| scenario | there | auto no_pose_% | auto off_% |", done.stdout)
         self.assertIn("| gale | auto | 20 |", done.stdout)
         self.assertIn("--returns strongest", first)
         self.assertEqual([f.name for f in sorted(next(kept.iterdir()).glob("auto.*"))], ["auto.csv", "auto.toml"])

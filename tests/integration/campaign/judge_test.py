@@ -108,6 +108,43 @@ class FalseHealthy(unittest.TestCase):
         self.assertEqual(row["could"], np.count_nonzero((times(300) >= 1.05) & (times(300) < 20.0)))
 
 
+class AnyPose(unittest.TestCase):
+    def test_a_pose_counts_whatever_health_says_and_no_pose_is_no_error(self):
+        # 40 frames off by 4 mm, 40 by 0.2 m and 0.3 deg, 20 without a pose; never healthy.
+        i = np.arange(100)
+        x = np.where(i < 40, 0.004, np.where(i < 80, 0.2, math.nan))
+        row = judge.summary(judged(frames(100, x=x, yaw=np.where(i < 40, 0.0, 0.3), health=0), truth(10)))
+        self.assertIsNone(row["rms_mm"])
+        self.assertEqual(row["there"], 100)
+        self.assertAlmostEqual(row["no_pose_%"], 20.0)
+        self.assertAlmostEqual(row["off_%"], 50.0)
+        self.assertAlmostEqual(row["any_p50_m"], (0.004 + 0.2) / 2)
+        self.assertAlmostEqual(row["any_p95_m"], 0.2)
+        self.assertAlmostEqual(row["any_p50_deg"], 0.15)
+        self.assertAlmostEqual(row["any_p95_deg"], 0.3)
+
+    def test_a_pose_is_off_by_its_place_or_by_its_rotation(self):
+        x = np.array([0.0499, 0.0501, 0.0, 0.0])
+        yaw = np.array([0.0, 0.0, 0.0999, 0.1001])
+        self.assertAlmostEqual(judge.summary(judged(frames(4, x=x, yaw=yaw), truth(1)))["off_%"], 50.0)
+
+    def test_a_ship_under_way_is_there_until_it_is_outside_the_envelope(self):
+        # At 1 m/s out of y = 2 m after 2 s, followed by nobody.
+        row = judge.summary(judged(frames(30, health=0), truth(3, y=lambda s: 1.0 * s)))
+        self.assertEqual((row["could"], row["there"]), (0, 20))
+        self.assertAlmostEqual(row["any_p50_m"], np.median(times(20)))
+
+    def test_another_ship_has_no_such_figures(self):
+        row = judge.summary(judged(frames(30), truth(3), mapped=False))
+        self.assertEqual(row["there"], 0)
+        self.assertEqual([row[name] for name in ("no_pose_%", "off_%", "any_p50_m", "any_p95_deg")], [None] * 4)
+
+    def test_without_a_pose_in_any_frame_there_is_no_error(self):
+        row = judge.summary(judged(frames(30, health=0, **{name: math.nan for name in POSE}), truth(3)))
+        self.assertAlmostEqual(row["no_pose_%"], 100.0)
+        self.assertEqual([row[name] for name in ("off_%", "any_p50_m", "any_p95_deg")], [None] * 3)
+
+
 class Reaction(unittest.TestCase):
     def test_time_to_notice_runs_from_the_moment_at_which_the_hull_passes_max_speed(self):
         # 0.1 m/s2 passes 0.3 m/s at 3.00 s; health falls with the frame at 3.35 s.
