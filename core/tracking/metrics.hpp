@@ -1,7 +1,7 @@
 // The distance metrics of ICD 3: from map points to their nearest neighbours in the aligned scan.
 //
 // Metres. The scan is taken at full resolution, after region and exclude boxes. Pure but for the scratch that
-// the caller lends. Failure: no distance gives valid = false. Cost: one search a point, one partial sort.
+// the caller lends. Failure: no distance gives valid = false. Cost: one search a point, three partial sorts.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,7 @@ struct DistanceMetrics {
   std::optional<double> q1_expected = {};
 };
 
-/// Percentiles interpolate linearly between order statistics: rank p (n - 1), counted from 0.
-/// `distances` (finite, m) is reordered.
+/// Percentiles as in core/base/percentile.hpp. `distances` (finite, m) is reordered.
 [[nodiscard]] DistanceMetrics summarise_distances(std::vector<double>& distances);
 
 }  // namespace hulltrack

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/percentile.hpp"
 #include "core/base/text.hpp"
 
 namespace hulltrack {
@@ -12,15 +13,6 @@ namespace {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 bool healthy(State state) { return state == State::tracking; }
-
-double percentile(std::vector<double> values, double p) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(p * static_cast<double>(values.size())));
-  return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
-}
 
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());

@@ -11,7 +11,9 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "core/base/percentile.hpp"
 #include "core/io/map_file.hpp"
 #include "core/io/pcd_writer.hpp"
 #include "daemon/app/frame_pipeline.hpp"
@@ -116,7 +118,7 @@ void time_frames(const FrameRecording& recording, RegistrationMethod method,
 using Output = std::map<std::string, double>;
 
 void report(const std::string& method, const Figures& figures, Output& out) {
-  const auto add = [&](const std::string& what, const Times& times) {
+  const auto add = [&](const std::string& what, Times times) {
     out[method + ' ' + what + "_median_cpu_ms"] = percentile(times.cpu, 0.5);
     out[method + ' ' + what + "_median_wall_ms"] = percentile(times.wall, 0.5);
     out[method + ' ' + what + "_p99_cpu_ms"] = percentile(times.cpu, 0.99);
@@ -184,10 +186,10 @@ void run() {
   };
   report("auto", automatic, out);
   report("point_to_point", published, out);
-  for (const auto& [part, times] : parts) {
+  for (auto& [part, times] : parts) {
     out["part " + part] = percentile(times, 0.5);
   }
-  for (const auto& [part, times] : start_parts) {
+  for (auto& [part, times] : start_parts) {
     out["start " + part] = percentile(times, 0.5);
   }
   print(out);

@@ -3,11 +3,8 @@
 // On a machine that does other things as well the second is the one that says something about the code.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <ctime>
 #include <utility>
-#include <vector>
 
 namespace hulltrack::bench {
 
@@ -40,11 +37,5 @@ class Stopwatch {
 
   Milliseconds last_ = now();
 };
-
-/// The value of rank p (0 .. 1); `values` is not empty.
-inline double percentile(std::vector<double> values, double p) {
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(p * static_cast<double>(values.size() - 1) + 0.5)];
-}
 
 }  // namespace hulltrack::bench
