@@ -47,7 +47,7 @@ std::optional<double> ExpectedDistance::q1(const HullMap& map, std::span<const V
     }
     between2_.push_back(nearest2);
   }
-  if (between2_.size() < kFewest) {
+  if (had_few_surfels()) {
     return std::nullopt;
   }
   const auto quartile = between2_.begin() + static_cast<std::ptrdiff_t>(between2_.size() / 4);

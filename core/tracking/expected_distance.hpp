@@ -21,8 +21,9 @@ namespace hulltrack {
 
 class ExpectedDistance {
  public:
-  /// Surfels that the figure stands on: fewer and there is none; of more, evenly taken ones. Of 1000 the
-  /// quartile is sure to a twentieth.
+  /// Surfels that the figure stands on: fewer and there is none; of more, evenly taken ones. Between lines
+  /// the quartile of n is sure to sqrt(3 / n) of itself, 1 sigma: of 50 to a quarter, half of what lies
+  /// between the right Q1 and 1.5 times it; of 1000 to a twentieth.
   static constexpr std::size_t kFewest = 50;
   static constexpr std::size_t kSamples = 1000;
   /// 1 sigma of what else is between a map point and a return: the +-3 cm of range that makers state.
@@ -33,6 +34,10 @@ class ExpectedDistance {
   /// `visible`: of map.probes_H(), at the pose T_W_H.
   [[nodiscard]] std::optional<double> q1(const HullMap& map, std::span<const VisiblePoint> visible,
                                          const Pose& T_W_H, std::span<const ScanView> views);
+
+  /// Did the last q1() have fewer than kFewest surfels to ask? That the figure is missing then says nothing
+  /// about the rays: the hull is far away, or most of it is hidden.
+  [[nodiscard]] bool had_few_surfels() const { return between2_.size() < kFewest; }
 
  private:
   std::vector<float> between2_;  // per surfel: squared distance from the nearest ray in its plane, m^2

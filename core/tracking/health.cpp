@@ -44,10 +44,12 @@ void check_registration(const HealthLimits& limits, const Evidence& e, Findings&
   }
 }
 
-/// Q1 against what this sensor should see at this pose.
+/// Q1 against what this sensor should see at this pose. With few surfels within metric_range it is no
+/// witness, neither for nor against: integrity is, which looks farther and takes health away where it has few
+/// as well.
 void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Findings& findings) {
   if (!metrics.q1_expected) {
-    if (!health.q1_healthy) {
+    if (!metrics.few_surfels && !health.q1_healthy) {
       findings.add(
           State::degraded, fault::q1_high,
           format_text("Q1 is %.3f m; too few rays meet the map to tell what it should be", metrics.q1));

@@ -171,11 +171,14 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   IntegrityReport report = inspect(result.T_W_H);
   keep_within(config.health.metric_range, visible);  // integrity looks farther than distances are taken
   std::optional<double> q1_expected;
+  bool few_surfels = false;
   if (config.metrics_scope != MetricsScope::whole_map) {  // it speaks of what is in view
     q1_expected = expected_distance.q1(*map, visible, result.T_W_H, views);
+    few_surfels = expected_distance.had_few_surfels();
   }
   result.metrics = measure(result.T_W_H);
   result.metrics.q1_expected = q1_expected;
+  result.metrics.few_surfels = few_surfels;
 
   const Eigen::Vector3d reference_W = reference_H + result.displacement;
   report.step = config.registration.method == RegistrationMethod::automatic

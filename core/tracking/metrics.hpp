@@ -20,6 +20,8 @@ struct DistanceMetrics {
   std::uint32_t points = 0;  // map points that the figures stand on
   /// What q1 should be at this pose, m (expected_distance.hpp); nothing where that cannot be told.
   std::optional<double> q1_expected = {};
+  /// It cannot be told because too few flat map points are in view within range: q1 says nothing of the pose.
+  bool few_surfels = false;
 };
 
 /// Percentiles as in core/base/percentile.hpp. `distances` (finite, m) is reordered.

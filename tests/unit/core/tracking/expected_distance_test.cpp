@@ -102,6 +102,7 @@ TEST_F(WallInLines, PutsPointsThatNoRayPassesBehindAllOthers) {
   views.clear();
   add_lidar(kLidar, 0.0, [](const Point& met) { return met.y() < -5.0F ? 1.0F : 0.0F; });
   EXPECT_FALSE(q1()) << "less than a quarter has rays";
+  EXPECT_FALSE(expected_distance.had_few_surfels()) << "it is the rays that are missing";
 }
 
 TEST_F(WallInLines, ExpectsNothingOfAScanWithoutReturnsOrOfAFewPoints) {
@@ -110,6 +111,9 @@ TEST_F(WallInLines, ExpectsNothingOfAScanWithoutReturnsOrOfAFewPoints) {
   views.clear();
   add_lidar(kLidar, 0.0);
   EXPECT_FALSE(q1(ExpectedDistance::kFewest - 1));
+  EXPECT_TRUE(expected_distance.had_few_surfels());
+  EXPECT_TRUE(q1(4 * ExpectedDistance::kFewest)) << "some are at the wall's edge, where nothing is flat";
+  EXPECT_FALSE(expected_distance.had_few_surfels());
 }
 
 TEST_F(WallInLines, ASecondLidarBetweenTheLinesHalvesItWhereItsSightIsFree) {

@@ -157,6 +157,25 @@ TEST(Health, ASitesOwnLimitDecidesAloneWhereNothingIsExpected) {
   EXPECT_EQ(verdict_on(0.11, std::nullopt, set).state, State::degraded);
 }
 
+TEST(Health, Q1OfAFewPointsLeavesTheDecisionToIntegrity) {
+  const auto few = [](Evidence& e) {
+    e.metrics.q1 = 0.5;
+    e.metrics.q1_expected.reset();
+    e.metrics.few_surfels = true;
+  };
+  Machine machine = tracking_machine();
+  EXPECT_EQ(machine.step(few).state, State::tracking);
+  const HealthVerdict verdict = machine.step([&](Evidence& e) {
+    few(e);
+    e.integrity = {.faults = fault::unconstrained, .reason = "few here as well"};
+  });
+  EXPECT_EQ(verdict.state, State::degraded);
+  EXPECT_EQ(verdict.faults, fault::unconstrained) << "of Q1 nothing is known";
+  EXPECT_EQ(verdict.reason, "few here as well");
+  machine.set.health.q1_healthy = 0.4;
+  EXPECT_EQ(machine.step(few).faults, fault::q1_high) << "a site's own limit holds";
+}
+
 TEST(Health, ReturnsAfterRecoverFramesGoodFramesInARow) {
   for (const Case& c : cases()) {
     Machine machine = tracking_machine();

@@ -34,7 +34,8 @@ constexpr int kFramesToBelieve = 30;
 /// A tracker over the analytic ship, and what it says frame after frame.
 class Track {
  public:
-  Track() : tracker_(tracker_config(), {}, {sensor()}, testing::bulk_carrier_map()) {}
+  explicit Track(const TrackerConfig& config = tracker_config())
+      : tracker_(config, {}, {sensor()}, testing::bulk_carrier_map()) {}
 
   TrackResult step(const AnalyticShip* ship, ScanOptions options, const FrameInputs& inputs = {}) {
     options.frame = frame_++;
@@ -99,6 +100,18 @@ TEST(HullTracker, ExpectsQ1OfThePointsThatItIsTakenOf) {
   EXPECT_LT(*near.q1_expected, 0.95 * *far.q1_expected) << "rays are denser near the sensor";
   EXPECT_NEAR(near.q1 / *near.q1_expected, 1.0, 0.2);
   EXPECT_NEAR(far.q1 / *far.q1_expected, 1.0, 0.2);
+}
+
+TEST(HullTracker, BelievesWhatItSeesFartherOffWhereFewPointsAreWithinTheMetricsRange) {
+  TrackerConfig config = tracker_config();
+  config.health.metric_range = 16.3;
+  Track track(config);
+  const TrackResult result = track.settle(displaced({0.04, -0.03, -0.05}));
+  EXPECT_GT(result.metrics.points, 0U);
+  EXPECT_FALSE(result.metrics.q1_expected);
+  EXPECT_TRUE(result.metrics.few_surfels);
+  EXPECT_EQ(result.state, State::tracking) << result.reason;
+  EXPECT_EQ(result.faults, 0);
 }
 
 TEST(HullTracker, TellsTheMotionOfAHealthyHullAlone) {
