@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
+#include <random>
+#include <vector>
 
 namespace hulltrack {
 namespace {
@@ -336,6 +339,61 @@ TEST(Health, SteadySpeedAboveTheLimitTakesHealth) {
   }
 }
 
+/// `seconds` of a hull that moves along x as `x` says, each pose off by `noise` in x, y and z; when it passed
+/// for too fast, from 1 s on.
+std::vector<double> alarms(const std::function<double(double)>& x, double seconds, double noise,
+                           unsigned seed, double first_t = 0.0) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> error(0.0, noise);
+  Machine machine;
+  std::vector<double> result;
+  for (int i = 0; 0.1 * i < seconds; ++i) {
+    const double t = first_t + 0.1 * i;
+    const HealthVerdict verdict = machine.step([&](Evidence& e) {
+      e.displacement = Eigen::Vector3d(x(t) + error(random), error(random), error(random));
+    });
+    if (i >= 10 && (verdict.faults & fault::implausible) != 0) {
+      result.push_back(t);
+    }
+  }
+  return result;
+}
+
+constexpr double kPoseNoise = 0.003;      // m, what a scan in clear air leaves
+constexpr double kLargestNoise = 0.0125;  // m, four of it are the largest error that health allows
+
+TEST(Health, AHullThatSetsOffLosesItWithinHalfASecondOfPassingTheLimit) {
+  for (const double acceleration : {0.05, 0.1, 0.16, 0.4, 2.0}) {
+    const double passed = 0.3 / acceleration;
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+      const auto x = [&](double t) { return t < 0.0 ? 0.0 : 0.5 * acceleration * t * t; };
+      const double offset = 0.001 * seed;  // of the frames, which do not wait for the hull
+      const std::vector<double> when = alarms(x, passed + 4.0, kPoseNoise, seed, offset - 3.0);
+      ASSERT_FALSE(when.empty());
+      EXPECT_LE(when.front(), passed + 0.5) << acceleration << " m/s2, seed " << seed;
+      EXPECT_GE(when.front(), passed - 0.5) << acceleration << " m/s2, seed " << seed;
+    }
+  }
+}
+
+TEST(Health, NoiseOfTheWorstScanThatHealthAllowsPassesForNoSpeed) {
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    EXPECT_TRUE(alarms([](double) { return 0.0; }, 30.0, kLargestNoise, seed).empty()) << "at rest " << seed;
+    const auto creeping = [](double t) { return 0.15 * t; };
+    EXPECT_TRUE(alarms(creeping, 13.0, kLargestNoise, seed).empty()) << "at 0.15 m/s " << seed;
+  }
+}
+
+TEST(Health, AHullThatSpeedsUpToBelowTheLimitKeepsIt) {
+  const auto x = [](double t) {  // 0.05 m/s2 up to 0.25 m/s
+    const double gaining = std::clamp(t - 2.0, 0.0, 5.0);
+    return 0.025 * gaining * gaining + 0.25 * std::max(0.0, t - 7.0);
+  };
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    EXPECT_TRUE(alarms(x, 20.0, kPoseNoise, seed).empty()) << seed;
+  }
+}
+
 TEST(Health, TurningFasterThanTheEndsMayMoveTakesHealth) {
   // 0.3 m/s 60 m from the middle is 0.29 deg/s, and noise 0.1.
   for (const double rate_deg : {0.25, 0.5, -0.5}) {
@@ -387,12 +445,47 @@ TEST(MotionRecord, SlopeOfALineIsItsSpeed) {
   EXPECT_TRUE(record.motion()->rpy_rate.isApprox(Eigen::Vector3d(0.02, 0.03, -0.01), 1e-9));
 }
 
+TEST(MotionRecord, OfAHullThatSpeedsUpItTellsTheSpeedOfTheLastPose) {
+  MotionRecord record;
+  for (int i = 0; i < 30; ++i) {
+    const milliseconds time(100 * i + 10 * (i % 3));  // not quite regular
+    const double t = to_seconds(time);
+    record.add(MeasurementTime{time}, {0.025 * t * t, 0.0, 0.0}, {0.0, 0.0, 0.002 * t * t});
+    if (const auto motion = record.motion()) {
+      EXPECT_NEAR(motion->velocity.x(), 0.05 * t, 0.05 * (i < 15 ? 0.2 : 0.03)) << "lag at " << t;
+      EXPECT_NEAR(motion->rpy_rate.z(), 0.004 * t, 0.004 * (i < 15 ? 0.2 : 0.03)) << "lag at " << t;
+    }
+  }
+}
+
 TEST(MotionRecord, FewPositionsHaveNoSpeed) {
   MotionRecord record;
   for (int i = 0; i < 3; ++i) {
     record.add(MeasurementTime{i * milliseconds(100)}, {1.0 * i, 0, 0}, Eigen::Vector3d::Zero());
     EXPECT_FALSE(record.motion());
   }
+}
+
+TEST(MotionRecord, TwoPosesASecondAreEnough) {
+  MotionRecord record;
+  for (int i = 0; i < 10; ++i) {
+    record.add(MeasurementTime{i * milliseconds(500)}, {0.1 * i, 0, 0}, Eigen::Vector3d::Zero());
+  }
+  ASSERT_TRUE(record.motion());
+  EXPECT_NEAR(record.motion()->velocity.x(), 0.2, 1e-9);
+}
+
+TEST(MotionRecord, AfterAGapItBeginsAnew) {
+  MotionRecord record;
+  for (int i = 0; i < 10; ++i) {
+    record.add(MeasurementTime{i * milliseconds(100)}, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
+  }
+  record.add(MeasurementTime{milliseconds(900) + MotionRecord::kLongestGap}, {0.3, 0, 0},
+             Eigen::Vector3d::Zero());
+  EXPECT_TRUE(record.motion());
+  record.add(MeasurementTime{milliseconds(901) + 2 * MotionRecord::kLongestGap}, {0.3, 0, 0},
+             Eigen::Vector3d::Zero());
+  EXPECT_FALSE(record.motion());
 }
 
 }  // namespace
