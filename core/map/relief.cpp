@@ -36,7 +36,9 @@ Relief::Relief(std::span<const Point> cloud_H) {
   find_horizons();
   find_pits();
   find_insides();
+  number_pits();
   raise_covers_place();
+  find_tall_columns();
 }
 
 Relief::Cell Relief::cell_of(const Point& p) const {
@@ -119,13 +121,40 @@ void Relief::find_insides() {
   }
 }
 
+/// Connected insides are one pit.
+void Relief::number_pits() {
+  pit_.assign(top_.size(), kNoPit);
+  std::uint32_t pits = 0;
+  std::vector<Cell> grown;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const auto join = [&](Cell c) {
+        if (inside(c) && inside_pit_[index(c)] && pit_[index(c)] == kNoPit) {
+          pit_[index(c)] = pits;
+          grown.push_back(c);
+        }
+      };
+      join({column, row});
+      const bool begun = !grown.empty();
+      while (!grown.empty()) {
+        const Cell from = grown.back();
+        grown.pop_back();
+        for (const auto& [dc, dr] : kDirections) {
+          join({from.column + dc, from.row + dr});
+        }
+      }
+      pits += begun ? 1 : 0;
+    }
+  }
+}
+
 void Relief::raise_covers_place() {
   covers_from_.assign(top_.size(), kNowhere);
-  const int reach = cells(kCoversReach);
+  const int reach = cells(kCoversReach) + 1;  // from a cell inside of the rim; a gap without one is no hold
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       const float rim = rim_[index({column, row})];
-      if (std::isnan(rim)) {
+      if (!inside_pit_[index({column, row})]) {
         continue;
       }
       for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); ++r) {
@@ -138,9 +167,39 @@ void Relief::raise_covers_place() {
   }
 }
 
+/// With the cells around, since the sides of what stands there may lean by as much.
+void Relief::find_tall_columns() {
+  tall_.assign(top_.size(), false);
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const Cell c{column, row};
+      if (top_[index(c)] <= covers_from_[index(c)]) {
+        continue;
+      }
+      tall_[index(c)] = true;
+      for (const auto& [dc, dr] : kDirections) {
+        const Cell beside{column + dc, row + dr};
+        if (inside(beside) && covers_from_[index(beside)] != kNowhere) {
+          tall_[index(beside)] = true;
+        }
+      }
+    }
+  }
+}
+
+bool Relief::under_covers_place(const Point& p) const {
+  const Cell c = cell_of(p);
+  return in_covers_place(p) || (inside(c) && tall_[index(c)]);
+}
+
 bool Relief::in_covers_place(const Point& p) const {
   const Cell c = cell_of(p);
   return inside(c) && p.z() > covers_from_[index(c)];
+}
+
+std::uint32_t Relief::pit_near(const Point& p, float reach) const {
+  const std::optional<Point> over = over_pit_near(p, reach);
+  return over ? pit_[index(cell_of(*over))] : kNoPit;
 }
 
 std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {

@@ -6,6 +6,7 @@
 // Cost: some 0.1 s for a ship of 200 m.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -31,11 +32,19 @@ class Relief {
   /// Whether p stands higher than the rim of a pit within kCoversReach.
   [[nodiscard]] bool in_covers_place(const Point& p) const;
 
+  /// The same, or p is below something that does: covers that are folded beside a hatch may reach down to the
+  /// deck, and whoever moves them bares what is behind.
+  [[nodiscard]] bool under_covers_place(const Point& p) const;
+
   /// Height of the rim of the pit that p is over, m; NaN where there is none.
   [[nodiscard]] float rim_around(const Point& p) const {
     const Cell c = cell_of(p);
     return inside(c) ? rim_[index(c)] : std::numeric_limits<float>::quiet_NaN();
   }
+
+  static constexpr std::uint32_t kNoPit = 0xFFFFFFFFU;
+  /// Number of the pit that is nearest to p within `reach` (m); kNoPit where there is none.
+  [[nodiscard]] std::uint32_t pit_near(const Point& p, float reach) const;
 
   /// A point at p's height over the nearest pit within `reach` (m), a cell inside of its rim.
   [[nodiscard]] std::optional<Point> over_pit_near(const Point& p, float reach) const;
@@ -56,7 +65,9 @@ class Relief {
   void find_horizons();
   void find_pits();
   void find_insides();
+  void number_pits();
   void raise_covers_place();
+  void find_tall_columns();
 
   Point corner_ = Point::Zero();
   int columns_ = 0;
@@ -65,6 +76,8 @@ class Relief {
   std::vector<float> horizon_;      // per cell: the least, over all directions, of the highest structure
   std::vector<float> rim_;          // per cell of a pit: the height of its rim; NaN elsewhere
   std::vector<bool> inside_pit_;    // per cell: it and the eight around it are pit
+  std::vector<std::uint32_t> pit_;  // per cell inside of one: its number; kNoPit elsewhere
+  std::vector<bool> tall_;          // per cell: it or one around it reaches into the covers' place
   std::vector<float> covers_from_;  // per cell: above this height is the covers' place; infinity = nowhere
 };
 

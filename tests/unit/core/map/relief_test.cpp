@@ -22,6 +22,7 @@ void add_level(Cloud& cloud, float x0, float x1, float y0, float y1, float z) {
 /// The four walls of a rectangle, from z0 to z1.
 void add_walls(Cloud& cloud, float x0, float x1, float y0, float y1, float z0, float z1) {
   for (float z = z0; z <= z1 + 1e-3F; z += kSpacing) {
+    cloud.emplace_back(x1, y1, z);  // a gap in a corner would be seen through
     for (float x = x0; x <= x1 + 1e-3F; x += kSpacing) {
       cloud.emplace_back(x, y0, z);
       cloud.emplace_back(x, y1, z);
@@ -85,6 +86,44 @@ TEST(Relief, CoversStandAboveTheRimWithinTheirReachOfTheHatch) {
   EXPECT_FALSE(relief.in_covers_place({0.0F, 4.9F, kRim})) << "the rim itself";
   EXPECT_FALSE(relief.in_covers_place({12.0F, 0.0F, 3.0F})) << "farther than covers stand";
   EXPECT_FALSE(relief.in_covers_place({-15.5F, 0.0F, 8.0F})) << "the house";
+}
+
+TEST(Relief, WhatStandsInTheCoversPlaceBelongsToItDownToTheDeck) {
+  Cloud cloud = ship();
+  add_walls(cloud, 9.0F, 9.5F, -4.0F, 4.0F, 0.0F, 3.0F);  // covers folded forward of the hatch
+  const Relief relief(cloud);
+  EXPECT_TRUE(relief.under_covers_place({9.0F, 0.0F, 0.3F}));
+  EXPECT_TRUE(relief.under_covers_place({9.5F, 3.0F, 1.0F}));
+  EXPECT_FALSE(relief.under_covers_place({10.5F, 0.0F, 0.3F})) << "beside them";
+  EXPECT_FALSE(relief.under_covers_place({8.0F, 0.0F, 0.3F})) << "the coaming";
+  EXPECT_FALSE(Relief(ship()).under_covers_place({9.0F, 0.0F, 0.3F})) << "without them";
+}
+
+TEST(Relief, AGapUnderALedgeIsNoHoldThatCoversLieOver) {
+  Cloud cloud = ship();
+  // Along one coaming, unseen from above: a gap of 0.4 m below a ledge that is lower than the coaming.
+  std::erase_if(cloud,
+                [](const Point& p) { return p.y() > 5.05F && p.y() < 5.5F && std::abs(p.x()) < 8.0F; });
+  add_walls(cloud, -8.0F, 8.0F, 5.5F, 5.7F, 0.0F, kRim - 0.3F);
+  EXPECT_FALSE(Relief(cloud).in_covers_place({0.0F, 5.0F, kRim})) << "the coaming's top";
+}
+
+TEST(Relief, EveryHoldHasItsNumber) {
+  Cloud cloud = ship();
+  const std::size_t one = cloud.size();
+  for (std::size_t i = 0; i < one; ++i) {
+    cloud.push_back(cloud[i] + Point(40.0F, 0.0F, 0.0F));
+  }
+  const Relief relief(cloud);
+  const std::uint32_t aft = relief.pit_near({0.0F, 0.0F, 0.0F}, 1.0F);
+  const std::uint32_t forward = relief.pit_near({40.0F, 0.0F, 0.0F}, 1.0F);
+  EXPECT_NE(aft, Relief::kNoPit);
+  EXPECT_NE(forward, Relief::kNoPit);
+  EXPECT_NE(aft, forward);
+  for (const Point& at : {Point(8.2F, 3.0F, kRim), Point(-8.2F, 0.0F, 0.5F), Point(2.0F, -5.2F, 0.0F)}) {
+    EXPECT_EQ(relief.pit_near(at, 1.0F), aft) << at.transpose();
+  }
+  EXPECT_EQ(relief.pit_near({12.0F, 0.0F, 0.0F}, 1.0F), Relief::kNoPit);
 }
 
 TEST(Relief, AHoldThatNoSurveySawIsNone) {
