@@ -191,7 +191,7 @@ std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
   }
   if (unique_) {
     challenger_ = search_.challenge(few_W_, T_H_W, kClearlyBetter, plane_icp_);
-    return std::nullopt;
+    return challenger_ ? std::optional(aligned(*challenger_)) : std::nullopt;
   }
   const double least = kRivals * search_.score(few_W_, T_H_W, plane_icp_);
   for (const HullSearch::Place& place : search_.places()) {
@@ -199,17 +199,21 @@ std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
       break;
     }
     if (!place.contradicted && !place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
-      const Pose start = place.T_H_W;
-      return Rival{start,
-                   plane_icp_.align(thinned_W_, map_->planes(), start, bend_.now()).icp.T_target_source};
+      return aligned(place.T_H_W);
     }
   }
   return std::nullopt;
 }
 
+PoseFinder::Rival PoseFinder::aligned(const Pose& start) {
+  return {start, plane_icp_.align(thinned_W_, map_->planes(), start, bend_.now()).icp.T_target_source};
+}
+
 void PoseFinder::settle(const Pose& start, const Pose& T_H_W, bool contradicted) {
   if (!unique_) {
     search_.settle(start, T_H_W, contradicted);
+  } else if (contradicted) {
+    challenger_.reset();  // it matches more points, but the scan sees through what would be there
   }
 }
 

@@ -65,6 +65,7 @@ class PoseFinder {
   [[nodiscard]] Pose best_start(MeasurementTime time, const HealthMemory& memory);
   [[nodiscard]] Pose followed(MeasurementTime time, const HealthMemory& memory) const;
   void begin_search(MeasurementTime time);
+  [[nodiscard]] Rival aligned(const Pose& start);
 
   TrackerConfig config_;
   const HullMap* map_;

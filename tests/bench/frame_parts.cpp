@@ -86,7 +86,9 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     report.step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
     integrity.weigh(map, T_W_H, T_W_H * reference_H, finder.bend_shape(), finder.bend().d, report);
     done("patches");
-    require(!finder.rival(found.icp.T_target_source), "there is a rival");
+    if (const auto rival = finder.rival(found.icp.T_target_source)) {
+      finder.settle(rival->start, rival->T_H_W, true);  // the scan contradicts every other place
+    }
     done("challenge");
     follow(T_W_H, time, memory);
     finder.judged(memory, false);

@@ -126,6 +126,26 @@ TEST_F(Finding, AFalsePlaceDoesNotPersist) {
   EXPECT_LE(frames, 22) << "one stretch of twenty a frame";
 }
 
+TEST_F(Finding, ABetterPlaceThatTheScanContradictsNeverTakesTheFrame) {
+  const Vector3d displacement{-12.0, 0.0, 0.0};
+  const Cloud hull_W = scan_of(lying(displacement));
+  const Vector3d elsewhere = displacement + kBetweenHatches;
+  int examined = 0;
+  for (int i = 0; i < 45; ++i) {
+    follow(elsewhere);
+    const Pose T_H_W = finder.find(hull_W, time, memory).icp.T_target_source;
+    EXPECT_GT(error(T_H_W.inverse(), displacement), 1.0) << i;
+    if (const auto rival = finder.rival(T_H_W)) {
+      EXPECT_LT(error(rival->T_H_W.inverse(), displacement), 0.1) << "aligned with all of the scan";
+      finder.settle(rival->start, rival->T_H_W, true);
+      ++examined;
+    }
+    finder.judged(memory, false);
+    time += std::chrono::milliseconds(100);
+  }
+  EXPECT_GE(examined, 2) << "each time that its stretch of starts comes round";
+}
+
 TEST_F(Finding, AfterAReacquireEdgeTheBerthIsSearchedAnew) {
   const Cloud hull_W = scan_of(lying({-12.0, 1.0, 2.0}));
   (void)search(hull_W);
