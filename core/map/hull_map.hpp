@@ -36,9 +36,9 @@ class HullMap {
   [[nodiscard]] const Cloud& subset_H() const { return subset_H_; }
   [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
 
-  /// The tops of the hatches' coamings, and how many patches these and the surfels form.
+  /// The tops of the hatches' coamings, and the patches that these and the surfels form.
   [[nodiscard]] const std::vector<RimPoint>& rims() const { return rims_; }
-  [[nodiscard]] std::uint32_t patches() const { return patches_; }
+  [[nodiscard]] const std::vector<MapPatch>& patches() const { return patches_; }
 
   /// What is looked for in a scan: the metric subset, then the rim points.
   [[nodiscard]] const Cloud& probes_H() const { return probes_H_; }
@@ -56,7 +56,7 @@ class HullMap {
   Cloud subset_H_;
   std::vector<Surfel> surfels_;
   std::vector<RimPoint> rims_;
-  std::uint32_t patches_ = 0;
+  std::vector<MapPatch> patches_;  // by number
   Cloud probes_H_;
   PointBlocks occluders_H_;
   Relief relief_;

@@ -184,7 +184,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   report.step = config.registration.method == RegistrationMethod::automatic
                     ? certainty_of(found, joints, result)
                     : integrity.step(reference_W);
-  integrity.weigh(*map, result.T_W_H, reference_W, finder.bend_shape(), finder.bend().d, report);
+  integrity.weigh(*map, result.time, result.T_W_H, reference_W, finder.bend_shape(), finder.bend().d, report);
   if (report.step.solved) {
     result.sigma_translation = sigma_of(report.step.covariance_translation, report.step.translation);
     result.sigma_rotation = sigma_of(report.step.covariance_rotation, report.step.rotation);

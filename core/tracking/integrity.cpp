@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/map/surfels.hpp"
+#include "core/tracking/health.hpp"
 
 namespace hulltrack {
 namespace {
@@ -19,6 +20,9 @@ constexpr float kAlongRim = 0.1F;      // m: half of the distance of rim points
 constexpr float kBelowRim = 0.15F;     // m below its top: down beside it, on its side at least
 constexpr double kBlurred = 0.015;     // m, 1 sigma: three of them are a displaced patch
 constexpr float kRaised = 0.03F;       // m: a rim that may be covered
+constexpr double kOtherPlace = PatchEvidence::kReach;  // m: from there on patches mean other surfaces
+constexpr double kJump = 0.05;                         // m: three sigma of a pose that is worth looking at
+constexpr double kGap = 0.25;  // s: two frames without evidence, on which nothing is booked
 // Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
 constexpr float kSharedError = 1.0F / 16.0F;
 
@@ -123,23 +127,38 @@ IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint>
   return report;
 }
 
-void Integrity::weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
-                      const BendShape& shape, double bend, IntegrityReport& report) {
-  if (evidence_.patches() != map.patches()) {
+void Integrity::weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
+                      const Eigen::Vector3d& reference_W, const BendShape& shape, double bend,
+                      IntegrityReport& report) {
+  if (evidence_.patches() != map.patches().size()) {
     evidence_.reset(map.patches());
-    for (const RimPoint& rim : map.rims()) {
-      if (rim.patch != Surfel::kNoPatch) {
-        evidence_.mark_rim(rim.patch);
-      }
-    }
   }
   evidence_.begin_frame();
-  if (report.step.solved && (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
+  if (report.step.solved && report.step.translation.allFinite() && report.step.rotation.allFinite() &&
+      (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
+    follow_pose(map, time, T_W_H, reference_W);
     const PlaneStep& step = report.step;
     collect_evidence({T_W_H, reference_W, step.translation, step.rotation, shape, bend},
                      step.covariance_translation);
   }
   report.patches = evidence_.report();
+}
+
+/// Is the pose where a hull may have come to since evidence was collected last?
+void Integrity::follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
+                            const Eigen::Vector3d& reference_W) {
+  if (weighed_) {
+    const double dt = std::max(0.0, to_seconds(time - weighed_->time));
+    const Eigen::Vector3d moved_W = reference_W - weighed_->reference_W;
+    const double moved = moved_W.norm();
+    const bool jumped = moved > kJump + kFastestHull * std::min(dt, kGap);
+    if (jumped && (dt > kGap || moved > kOtherPlace)) {
+      evidence_.reset(map.patches());
+    } else if (jumped) {
+      evidence_.put_elsewhere((T_W_H.linear().transpose() * moved_W).cast<float>());
+    }
+  }
+  weighed_ = {time, reference_W};
 }
 
 void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,
@@ -180,7 +199,7 @@ void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, co
       looks_.push_back({surfel.patch, observations_.back(), PatchLook::on});
     }
   } else if (surfel.patch != Surfel::kNoPatch && through) {
-    looks_.push_back({surfel.patch, {}, PatchLook::through});
+    looks_.push_back({surfel.patch, {.n_W = n_W}, PatchLook::through});
   }
 }
 
@@ -205,7 +224,7 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
     if (std::abs(offset) <= kStepGate && axes.is_on_rim(returned)) {
       on(offset);
     } else if (offset < -kStepGate && axes.is_on_rim(met)) {
-      looks_.push_back({rim.patch, {}, PatchLook::through});
+      looks_.push_back({rim.patch, {.n_W = n_W}, PatchLook::through});
     }
     const bool through = offset < -kBelowRim;
     const Point& where = through ? met : returned;
@@ -267,7 +286,9 @@ void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& cova
                              look.seen.weight);
         break;
       case PatchLook::through:
-        evidence_.add_through(look.patch);
+        if (sharp(look.seen.n_W)) {
+          evidence_.add_through(look.patch);
+        }
         break;
       case PatchLook::goes_on:
       case PatchLook::ends:

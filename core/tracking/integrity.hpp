@@ -14,11 +14,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/status.hpp"
+#include "core/base/time.hpp"
 #include "core/geometry/se3.hpp"
 #include "core/map/hull_map.hpp"
 #include "core/registration/bend.hpp"
@@ -104,18 +106,23 @@ class Integrity {
   }
 
   /// What the scan of the last run() says about the ship, at its pose but for report.step and bent by `bend`
-  /// (m) along `shape`; fills report.patches. Once a frame, for the frame's own pose.
-  void weigh(const HullMap& map, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
+  /// (m) along `shape`; fills report.patches. Once a frame, for the frame's own pose. What was seen belongs
+  /// to one unbroken track: it is put elsewhere when the pose jumps, and forgotten when it comes back from a
+  /// gap, or from metres away, at another place.
+  void weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
              const BendShape& shape, double bend, IntegrityReport& report);
 
   /// Another ship may lie there from now on.
-  void forget() { evidence_.reset(0); }
+  void forget() {
+    evidence_.reset({});
+    weighed_.reset();
+  }
 
  private:
   /// What one probe says about its patch, before the pose's remaining error is taken off.
   struct PatchLook {
     std::uint32_t patch;
-    SurfelObservation seen;  // not when it was seen through
+    SurfelObservation seen;  // of a ray that went through the normal alone
     enum Kind : std::uint8_t { on, through, goes_on, ends } kind;
   };
   /// A ray that meets the top of a coaming or the air beside it.
@@ -125,6 +132,8 @@ class Integrity {
     float offset;
     bool through;
   };
+  void follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
+                   const Eigen::Vector3d& reference_W);
   void look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
                       IntegrityReport& report);
   void look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
@@ -143,6 +152,11 @@ class Integrity {
   std::vector<PatchLook> looks_;
   std::vector<RimRay> rim_rays_;
   PatchEvidence evidence_;
+  struct Place {
+    MeasurementTime time;
+    Eigen::Vector3d reference_W;
+  };
+  std::optional<Place> weighed_;  // where evidence was collected last
 };
 
 }  // namespace hulltrack

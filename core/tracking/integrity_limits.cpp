@@ -26,9 +26,12 @@ constexpr double kMostSeenThrough = 0.05;
 // Fewer confirmed surfels are no ground for a statement on shares: at 40 a share of 0.9 is known to 5 %.
 constexpr std::uint32_t kFewestConfirmed = 40;
 
-// One thing that was moved on deck shows three faces at most. A coaming is not moved: a piece of one counts
-// twice, and two are enough, since one may have something lying on it.
+// One thing that was moved on deck shows three faces at most. A coaming is not moved: a piece of its top
+// counts twice, and two are enough, since one may have something lying on it. A wall of one that stands
+// behind its place is enough: nothing that is put on board sets it back.
 constexpr std::uint32_t kFewestDisplaced = 4;
+// Of many patches some are judged wrongly, one in a hundred say, and a hatch that is elsewhere shows a tenth.
+constexpr std::uint32_t kSolidPerDisplaced = 20;
 
 bool is_finite(const PlaneStep& step) {
   return step.translation.allFinite() && step.rotation.allFinite() &&
@@ -60,6 +63,11 @@ IntegrityFinding judge_step(const PlaneStep& step) {
             format_text("the scan says the pose is turned by %.3f deg", degrees(step.rotation.norm()))};
   }
   return {};
+}
+
+/// Of structures that disagree as many may be right as wrong.
+bool outnumbers(const StructureCount& count) {
+  return count.displaced > 0 && count.displaced >= count.in_place;
 }
 
 IntegrityFinding judge_surfaces(const IntegrityReport& report) {
@@ -101,17 +109,28 @@ IntegrityFinding judge_integrity(const IntegrityReport& report) {
     return finding;
   }
   const PatchReport& patches = report.patches;
-  if (patches.displaced + patches.displaced_rims >= kFewestDisplaced) {
+  const std::uint32_t fewest = std::max(kFewestDisplaced, patches.solid / kSolidPerDisplaced);
+  if (patches.set_back > 0 || patches.displaced + patches.displaced_rims >= fewest) {
     finding.faults = fault::contradicted;
     finding.reason = format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere",
                                  patches.displaced, patches.solid);
     if (patches.median_offset > 0.0) {
       finding.reason += format_text(", by %.2f m", patches.median_offset);
     }
+  } else if (outnumbers(patches.along) || outnumbers(patches.across)) {
+    const bool along = outnumbers(patches.along);
+    const StructureCount& count = along ? patches.along : patches.across;
+    finding.faults = fault::contradicted;
+    finding.reason =
+        format_text("another ship than the map's: %s the ship %u structures stand elsewhere, %u in place",
+                    along ? "along" : "across", count.displaced, count.in_place);
   } else if (!patches.decided) {
     finding.undecided = true;
-    finding.reason = format_text("is it the map's ship? %u of %u surfaces in view are judged", patches.judged,
-                                 patches.in_view);
+    finding.reason = format_text(
+        "is it the map's ship? %u of %u surfaces in view are judged; in place are %u structures along the "
+        "ship, %u across, %u tops of coamings",
+        patches.judged, patches.in_view, patches.along.in_place, patches.across.in_place,
+        patches.rims_in_place);
   }
   return finding;
 }

@@ -84,7 +84,8 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     done("metrics");
     report.step.solved = found.covariance.valid;
     report.step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
-    integrity.weigh(map, T_W_H, T_W_H * reference_H, finder.bend_shape(), finder.bend().d, report);
+    integrity.weigh(map, scan.mid_time(), T_W_H, T_W_H * reference_H, finder.bend_shape(), finder.bend().d,
+                    report);
     done("patches");
     if (const auto rival = finder.rival(found.icp.T_target_source)) {
       finder.settle(rival->start, rival->T_H_W, true);  // the scan contradicts every other place
@@ -126,10 +127,9 @@ void time_map_parts(const Cloud& cloud_H, Parts& parts) {
   done("sides");
   std::vector<RimPoint> rims = find_rims(cloud_H, tree, relief);
   done("rims");
-  const std::uint32_t patches = number_patches(subset_H, surfels, rims, relief);
-  measure_rims(tree, rims);
+  const std::vector<MapPatch> patches = number_patches(subset_H, tree, relief, surfels, rims);
   done("patches");
-  require(patches > 0 && !planes.planes().empty(), "a map without surfaces");
+  require(!patches.empty() && !planes.planes().empty(), "a map without surfaces");
 }
 
 }  // namespace hulltrack::bench

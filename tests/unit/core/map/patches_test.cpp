@@ -21,6 +21,7 @@ constexpr float kHalfWidth = 5.0F;
 constexpr float kBreadth = 0.3F;  // of the coaming
 constexpr float kTop = 1.4F;
 constexpr float kFloor = -7.0F;
+constexpr float kCoverAt = 1.0F;  // forward of the opening
 
 /// How far outside of the opening a level point lies; negative inside.
 float outside(float x, float y) { return std::max(std::abs(x) - kHalfLength, std::abs(y) - kHalfWidth); }
@@ -59,9 +60,10 @@ Cloud hatch() {
       }
     }
   }
-  for (float y = -kHalfWidth; y < kHalfWidth; y += kSpacing) {  // a folded cover, on edge, forward
-    for (float z = kTop; z < kTop + 2.0F; z += kSpacing) {
-      add(kHalfLength + 1.0F, y, z);
+  for (float y = -kHalfWidth; y < kHalfWidth;
+       y += kSpacing) {  // a folded cover, on edge on the deck, forward
+    for (float z = 0.0F; z < kTop + 2.0F; z += kSpacing) {
+      add(kHalfLength + kCoverAt, y, z);
     }
   }
   return cloud;
@@ -100,12 +102,15 @@ TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoPatch) {
     const Point& p = map().subset_H()[i];
     const Surfel& surfel = map().surfels()[i];
     const bool hold = outside(p.x(), p.y()) < 0.1F && p.z() < kTop - Relief::kDepth - 0.1F;
-    const bool cover = p.z() > kTop + 0.3F;
+    const float from_cover = std::abs(p.x() - kHalfLength - kCoverAt);
+    const bool beside_cover =
+        from_cover < 2.0F * Relief::kCell + 0.05F && std::abs(p.y()) < kHalfWidth + 0.6F;
+    const bool cover = p.z() > kTop + 0.3F || (from_cover < 0.1F && std::abs(p.y()) < kHalfWidth);
     if (hold || cover) {
       EXPECT_TRUE(surfel.movable) << p.transpose();
       EXPECT_EQ(surfel.patch, Surfel::kNoPatch) << p.transpose();
       ++movable;
-    } else if (p.z() > kTop - Relief::kDepth + 0.1F && p.z() < kTop + 0.1F) {
+    } else if (!beside_cover && p.z() > kTop - Relief::kDepth + 0.1F && p.z() < kTop + 0.1F) {
       EXPECT_FALSE(surfel.movable) << p.transpose();
     }
   }
@@ -136,12 +141,12 @@ TEST_F(Hatch, RimsLieOnTheCoamingsMiddleAndKnowItsEdges) {
 }
 
 TEST_F(Hatch, APatchFacesOneWayAndIsNotLargerThanATile) {
-  std::vector<int> members(map().patches(), 0);
-  std::vector<SurfaceClass> faces(map().patches(), SurfaceClass::other);
-  std::vector<bool> of_rim(map().patches(), false);
-  std::vector<Box> boxes(map().patches());
+  std::vector<int> members(map().patches().size(), 0);
+  std::vector<SurfaceClass> faces(map().patches().size(), SurfaceClass::other);
+  std::vector<bool> of_rim(map().patches().size(), false);
+  std::vector<Box> boxes(map().patches().size());
   const auto add = [&](std::uint32_t patch, const Point& p_H) {
-    ASSERT_LT(patch, map().patches());
+    ASSERT_LT(patch, map().patches().size());
     Box& box = boxes[patch];
     box = members[patch]++ == 0 ? Box{p_H, p_H} : Box{box.min.cwiseMin(p_H), box.max.cwiseMax(p_H)};
   };
@@ -161,8 +166,9 @@ TEST_F(Hatch, APatchFacesOneWayAndIsNotLargerThanATile) {
       add(surfel.patch, map().subset_H()[i]);
     }
   }
-  EXPECT_GT(map().patches(), 20U);
-  for (std::uint32_t patch = 0; patch < map().patches(); ++patch) {
+  EXPECT_GT(map().patches().size(), 20U);
+  for (std::size_t patch = 0; patch < map().patches().size(); ++patch) {
+    EXPECT_EQ(of_rim[patch], map().patches()[patch].kind == PatchKind::rim) << patch;
     EXPECT_LE((boxes[patch].max - boxes[patch].min).maxCoeff(), kTile + 0.01F) << patch;
   }
 }
@@ -176,13 +182,41 @@ TEST_F(Hatch, ProbesAreTheSubsetThenTheRims) {
   }
 }
 
+TEST_F(Hatch, TheWallsUnderARimsEdgesAreTheCoamingsAndNothingElseIs) {
+  std::array<int, 3> walls{};  // inner ones, transverse and longitudinal; outer ones
+  for (std::size_t i = 0; i < map().subset_H().size(); ++i) {
+    const Point& p = map().subset_H()[i];
+    const Surfel& surfel = map().surfels()[i];
+    if (surfel.patch == Surfel::kNoPatch) {
+      continue;
+    }
+    const bool level = surfel.surface == SurfaceClass::horizontal;
+    const float out = outside(p.x(), p.y());
+    const bool inner = std::abs(out) < 0.1F;
+    const bool outer = std::abs(out - kBreadth) < 0.1F && p.z() > 0.0F;
+    const bool of_coaming = map().patches()[surfel.patch].kind == PatchKind::coaming_wall;
+    EXPECT_TRUE(!of_coaming || (!level && (inner || outer))) << p.transpose();
+    if (of_coaming) {
+      EXPECT_TRUE(surfel.backed);
+      const bool along = surfel.surface == SurfaceClass::longitudinal;
+      const int axis = along ? 1 : 0;
+      const float outward = surfel.normal_H[axis] * std::copysign(1.0F, p[axis]);
+      EXPECT_GT(inner ? -outward : outward, 0.9F) << p.transpose();
+      ++walls[!inner ? 2U : along ? 1U : 0U];
+    }
+  }
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    EXPECT_GT(walls[i], 20) << i;
+  }
+}
+
 TEST_F(Hatch, ACoamingsWallsAreSeenFromTheirOwnSideOnly) {
   int walls = 0;
   for (std::size_t i = 0; i < map().subset_H().size(); ++i) {
     const Point& p = map().subset_H()[i];
     const Surfel& surfel = map().surfels()[i];
     const bool between = std::abs(p.y()) < kHalfWidth - 1.0F && p.z() > 0.4F && p.z() < kTop - 0.4F;
-    if (surfel.planar && between && surfel.surface == SurfaceClass::transverse) {
+    if (surfel.planar && !surfel.movable && between && surfel.surface == SurfaceClass::transverse) {
       EXPECT_TRUE(surfel.backed);
       const float outward = std::abs(p.x()) > kHalfLength + 0.5F * kBreadth ? 1.0F : -1.0F;
       EXPECT_GT(outward * std::copysign(1.0F, p.x()) * surfel.normal_H.x(), 0.9F) << p.transpose();

@@ -185,16 +185,49 @@ TEST(JudgeIntegrityOfNan, FiguresThatAreNoNumbersAreNeverHealthy) {
   }
 }
 
-TEST(JudgeShip, FourDisplacedPatchesOrTwoPiecesOfCoamingAreAnotherShip) {
-  for (const auto& [displaced, rims, other] :
-       {std::tuple{0U, 0U, false}, {3U, 0U, false}, {1U, 1U, false}, {4U, 0U, true}, {2U, 2U, true}}) {
+TEST(JudgeShip, FourDisplacedPatchesTwoPiecesOfRimOrOneWallSetBackAreAnotherShip) {
+  for (const auto& [displaced, rims, set_back, other] : {std::tuple{0U, 0U, 0U, false},
+                                                         {3U, 0U, 0U, false},
+                                                         {1U, 1U, 0U, false},
+                                                         {4U, 0U, 0U, true},
+                                                         {2U, 2U, 0U, true},
+                                                         {1U, 0U, 1U, true}}) {
     IntegrityReport report = right_pose();
     report.patches.displaced = displaced;
     report.patches.displaced_rims = rims;
+    report.patches.set_back = set_back;
     report.patches.median_offset = 0.12;
     const IntegrityFinding finding = judge_integrity(report);
     EXPECT_EQ(finding.faults, other ? kContradicted : kNone) << displaced << " and " << rims;
     EXPECT_EQ(finding.reason.find("another ship") != std::string::npos, other) << finding.reason;
+  }
+}
+
+TEST(JudgeShip, OfAHundredPatchesTwoPiecesOfRimAreNoOtherShip) {
+  IntegrityReport report = right_pose();
+  report.patches.displaced = 2;
+  report.patches.displaced_rims = 2;
+  report.patches.solid = 110;
+  EXPECT_EQ(judge_integrity(report).faults, kNone);
+  report.patches.displaced = 3;
+  EXPECT_EQ(judge_integrity(report).faults, kContradicted);
+}
+
+TEST(JudgeShip, WhereAsManyStructuresDisagreeAsAgreeNobodyKnows) {
+  for (const auto& [in_place, displaced, other] : {std::tuple{0U, 0U, false},
+                                                   {1U, 0U, false},
+                                                   {2U, 1U, false},
+                                                   {1U, 1U, true},
+                                                   {0U, 1U, true},
+                                                   {1U, 2U, true}}) {
+    for (const bool along : {true, false}) {
+      IntegrityReport report = right_pose();
+      (along ? report.patches.along : report.patches.across) = {in_place, displaced};
+      const IntegrityFinding finding = judge_integrity(report);
+      EXPECT_EQ(finding.faults, other ? kContradicted : kNone) << in_place << " and " << displaced;
+      EXPECT_EQ(finding.reason.find(along ? "along the ship" : "across the ship") != std::string::npos, other)
+          << finding.reason;
+    }
   }
 }
 

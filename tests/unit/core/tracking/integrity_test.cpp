@@ -172,7 +172,7 @@ TEST_F(IntegrityRun, PatchesStandWhereTheBendPutsThem) {
         return surfel.surface == SurfaceClass::horizontal ? (p.z() + 0.1F) / p.z() : 1.0F;  // 0.1 m higher
       });
       report.step = {.solved = true};
-      integrity.weigh(map, Pose::Identity(), reference, shape, bend, report);
+      integrity.weigh(map, MeasurementTime{}, Pose::Identity(), reference, shape, bend, report);
     }
     EXPECT_GT(report.patches.in_view, 2U);
     return report.patches.displaced;
@@ -180,6 +180,31 @@ TEST_F(IntegrityRun, PatchesStandWhereTheBendPutsThem) {
   EXPECT_EQ(displaced(0.1), 0U);
   EXPECT_GT(displaced(0.0), 0U);
   EXPECT_GT(displaced(-0.1), 0U);
+}
+
+TEST_F(IntegrityRun, WhatWasSeenAtAPlaceFromWhichNoShipComesIsForgotten) {
+  MeasurementTime time{};
+  const auto displaced = [&](double x, double seconds, float factor) {
+    IntegrityReport report;
+    for (int frame = 0; frame < 3; ++frame) {
+      report = look([&](const Surfel& surfel, const Point&) {
+        return surfel.surface == SurfaceClass::horizontal ? factor : 1.0F;
+      });
+      report.step = {.solved = true};
+      time += std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
+      integrity.weigh(map, time, Pose::Identity(), reference + Eigen::Vector3d(x, 0.0, 0.0), {1e3, 2e3}, 0.0,
+                      report);
+      seconds = 0.1;
+    }
+    return report.patches.displaced;
+  };
+  constexpr float kLower = 1.02F;  // of 6 m: 0.12 m
+  const std::uint32_t there = displaced(0.0, 0.1, kLower);
+  ASSERT_GT(there, 0U);
+  EXPECT_EQ(displaced(0.0, 0.1, kLower), there);
+  EXPECT_EQ(displaced(22.0, 0.1, 1.0F), 0U) << "one hatch off within a frame, where all fits";
+  ASSERT_EQ(displaced(0.0, 0.1, kLower), there);
+  EXPECT_EQ(displaced(0.3, 60.0, 1.0F), 0U) << "unseen for a minute, and elsewhere since";
 }
 
 TEST_F(IntegrityRun, WhereNoRayEndsNothingIsExpected) {
