@@ -186,7 +186,8 @@ std::vector<MapPatch> number_patches(const Cloud& points_H, const KdTree& map, c
     rims[i].patch = narrow[i];
   }
   measure_rims(map, rims);
-  return describe_patches(relief, surfels, rims, patches, find_coaming_walls(rims, patches, surfels));
+  const std::vector<bool> is_wall = find_coaming_walls(rims, patches, surfels);
+  return describe_patches(relief, surfels, rims, patches, is_wall);
 }
 
 }  // namespace hulltrack

@@ -134,7 +134,7 @@ void Integrity::weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_
     evidence_.reset(map.patches());
   }
   evidence_.begin_frame();
-  if (report.step.solved && report.step.translation.allFinite() && report.step.rotation.allFinite() &&
+  if (report.step.solved && report.step.is_finite() &&
       (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
     follow_pose(map, time, T_W_H, reference_W);
     const PlaneStep& step = report.step;
@@ -228,7 +228,7 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
     }
     const bool through = offset < -kBelowRim;
     const Point& where = through ? met : returned;
-    if (rim.begin < rim.end && offset < kBelowRim && axes.is_beside_rim(where)) {
+    if (rim.is_measured() && offset < kBelowRim && axes.is_beside_rim(where)) {
       rim_rays_.push_back({&rim, axes.across(where), offset, through});
     }
   });

@@ -59,6 +59,10 @@ struct PlaneStep {
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     // rad
   Eigen::Matrix3d covariance_translation = Eigen::Matrix3d::Zero();  // of the reference point
   Eigen::Matrix3d covariance_rotation = Eigen::Matrix3d::Zero();
+  [[nodiscard]] bool is_finite() const {
+    return translation.allFinite() && rotation.allFinite() && covariance_translation.allFinite() &&
+           covariance_rotation.allFinite();
+  }
 };
 
 struct IntegrityReport {

@@ -33,16 +33,11 @@ constexpr std::uint32_t kFewestDisplaced = 4;
 // Of many patches some are judged wrongly, one in a hundred say, and a hatch that is elsewhere shows a tenth.
 constexpr std::uint32_t kSolidPerDisplaced = 20;
 
-bool is_finite(const PlaneStep& step) {
-  return step.translation.allFinite() && step.rotation.allFinite() &&
-         step.covariance_translation.allFinite() && step.covariance_rotation.allFinite();
-}
-
 IntegrityFinding judge_step(const PlaneStep& step) {
   if (!step.solved) {
     return {fault::unconstrained, "the surfaces in view leave a direction free"};
   }
-  if (!is_finite(step)) {  // NaN is neither above nor below a limit
+  if (!step.is_finite()) {  // NaN is neither above nor below a limit
     return {fault::unconstrained, "the step that the scan asks for is no number"};
   }
   const double sigma_t = largest_sigma(step.covariance_translation);

@@ -11,9 +11,9 @@
 //   set back    a coaming's wall that most rays find behind its place: whatever was put before a wall or
 //               taken from it since, it does not stand back
 // Only displaced ones and those set back speak against the ship; for her speak structures that are in place
-// (structures.hpp). Hull frame, metres. State: kBins + 2 floats
-// a patch, forgotten as new returns of the same patch come in (kMemory), all of it by reset(). Thread rule:
-// one owner. Cost: a few ns an observation, 50 ns a patch in view.
+// (structures.hpp). Hull frame, metres. State: kBins + 3 floats a patch, forgotten as new returns of the same
+// patch come in (kMemory), all of it by reset(). Thread rule: one owner. Cost: a few ns an observation, 50 ns
+// a patch in view.
 #pragma once
 
 #include <array>
