@@ -71,9 +71,10 @@ struct HullTracker::Impl {
   void look(const Joints& joints_mid);
   DistanceMetrics measure(const Pose& T_W_H);
   IntegrityReport inspect(const Pose& T_W_H);
-  void examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
-               TrackResult& result);
-  void search(Evidence& evidence, const TrackResult& result);
+  /// Returns how many surfels the scan confirms at the pose.
+  std::uint32_t examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
+                        TrackResult& result);
+  void search(Evidence& evidence, const TrackResult& result, std::uint32_t confirmed);
 };
 
 TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joints,
@@ -99,10 +100,8 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     scan_filter.run(scan, joints, drift(), filtered);
     const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);
-    if (result.registered) {
-      examine(found, joints, evidence, result);
-    }
-    search(evidence, result);
+    const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
+    search(evidence, result, confirmed);
     if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
       finder.learn(result.time, found);
     }
@@ -163,8 +162,8 @@ PlaneStep HullTracker::Impl::certainty_of(const PlaneIcpResult& found, const Joi
   return step;
 }
 
-void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
-                                TrackResult& result) {
+std::uint32_t HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory& joints,
+                                         Evidence& evidence, TrackResult& result) {
   const Eigen::Vector3d& reference_H = config.hull.reference_point;
   result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
@@ -195,6 +194,7 @@ void HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory&
   evidence.displacement = result.displacement;
   evidence.rotation = result.T_W_H.linear();
   evidence.integrity = judge_integrity(report);
+  return report.confirmed;
 }
 
 /// The scan against the map at T_W_H.
@@ -204,19 +204,16 @@ IntegrityReport HullTracker::Impl::inspect(const Pose& T_W_H) {
 }
 
 /// Does another place explain the scan as well? One is examined a frame.
-void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result) {
-  const auto contradicted = [](const IntegrityFinding& finding) {
-    return (finding.faults & fault::contradicted) != 0;
-  };
+void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result, std::uint32_t confirmed) {
   const Pose T_H_W = result.T_W_H.inverse();
   if (result.registered) {
-    const bool wrong = contradicted(evidence.integrity);
+    const bool wrong = (evidence.integrity.faults & fault::contradicted) != 0;
     finder.settle(T_H_W, T_H_W, wrong);
     if (const auto rival = wrong ? std::nullopt : finder.rival(T_H_W)) {
       const Pose T_W_H = rival->T_H_W.inverse();
       IntegrityReport report = inspect(T_W_H);
       report.step = integrity.step(T_W_H * config.hull.reference_point);
-      finder.settle(rival->start, rival->T_H_W, contradicted(judge_integrity(report)));
+      finder.settle(rival->start, rival->T_H_W, !is_alternative(report, confirmed));
     }
   }
   evidence.search = finder.evidence(T_H_W);

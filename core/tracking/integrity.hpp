@@ -91,6 +91,10 @@ struct IntegrityFinding {
 /// The same without the patches: may they be judged at this pose?
 [[nodiscard]] IntegrityFinding judge_pose_integrity(const IntegrityReport& report);
 
+/// May the hull as well lie at another place, whose report is `there`, if the scan confirms `here` surfels at
+/// the frame's own pose?
+[[nodiscard]] bool is_alternative(const IntegrityReport& there, std::uint32_t here);
+
 class Integrity {
  public:
   static constexpr float kPlaneGate = 0.15F;  // m

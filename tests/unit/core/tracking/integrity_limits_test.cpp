@@ -185,6 +185,25 @@ TEST(JudgeIntegrityOfNan, FiguresThatAreNoNumbersAreNeverHealthy) {
   }
 }
 
+TEST(JudgeAlternative, APlaceThatConfirmsHalfOfWhatTheFramesOwnDoesIsNone) {
+  const IntegrityReport there = right_pose();
+  EXPECT_TRUE(is_alternative(there, there.confirmed));
+  EXPECT_TRUE(is_alternative(there, there.confirmed * 3 / 2));
+  EXPECT_FALSE(is_alternative(there, there.confirmed * 2));
+}
+
+TEST(JudgeAlternative, APlaceThatTheScanContradictsIsNoneHoweverMuchItConfirms) {
+  IntegrityReport there = right_pose();
+  there.seen_through = 200;
+  EXPECT_FALSE(is_alternative(there, there.confirmed / 2));
+}
+
+TEST(JudgeAlternative, APlaceThatIsNotKnownToBeTheMapsShipMayBeOne) {
+  IntegrityReport there = right_pose();
+  there.patches.decided = false;
+  EXPECT_TRUE(is_alternative(there, there.confirmed));
+}
+
 TEST(JudgeShip, FourDisplacedPatchesTwoPiecesOfRimOrOneWallSetBackAreAnotherShip) {
   for (const auto& [displaced, rims, set_back, other] : {std::tuple{0U, 0U, 0U, false},
                                                          {3U, 0U, 0U, false},
