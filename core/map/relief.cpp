@@ -19,6 +19,9 @@ constexpr std::array<std::pair<int, int>, 8> kDirections{
 // Above a rim by less than this is the rim itself: sheer along a hatch, rest bars, noise.
 constexpr float kOnRim = 0.15F;  // m
 
+// What is around is asked of every third cell along both axes: 64 of them at most.
+constexpr int kStride = 3;
+
 int cells(float metres) { return static_cast<int>(std::lround(metres / Relief::kCell)); }
 
 }  // namespace
@@ -36,6 +39,7 @@ Relief::Relief(std::span<const Point> cloud_H) {
   find_horizons();
   find_pits();
   find_insides();
+  smooth_rims();
   number_pits();
   raise_covers_place();
   find_tall_columns();
@@ -119,6 +123,33 @@ void Relief::find_insides() {
                             }));
     }
   }
+}
+
+/// A gap in a coaming, or a corner that the survey missed, lowers the rim of all that is in line with it, and
+/// nothing raises one: the upper quartile of what is around is the coaming's, which follows trim and sheer.
+void Relief::smooth_rims() {
+  const int reach = cells(kCoversReach);
+  std::vector<float> smooth = rim_;
+  std::vector<float> around;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      if (!inside_pit_[index({column, row})]) {
+        continue;
+      }
+      around.clear();
+      for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); r += kStride) {
+        for (int c = std::max(0, column - reach); c <= std::min(columns_ - 1, column + reach); c += kStride) {
+          if (inside_pit_[index({c, r})]) {
+            around.push_back(rim_[index({c, r})]);
+          }
+        }
+      }
+      const auto quartile = around.begin() + static_cast<std::ptrdiff_t>(3 * around.size() / 4);
+      std::nth_element(around.begin(), quartile, around.end());
+      smooth[index({column, row})] = *quartile;
+    }
+  }
+  rim_ = std::move(smooth);
 }
 
 /// Connected insides are one pit.

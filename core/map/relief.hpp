@@ -65,6 +65,7 @@ class Relief {
   void find_horizons();
   void find_pits();
   void find_insides();
+  void smooth_rims();
   void number_pits();
   void raise_covers_place();
   void find_tall_columns();

@@ -99,6 +99,22 @@ TEST(Relief, WhatStandsInTheCoversPlaceBelongsToItDownToTheDeck) {
   EXPECT_FALSE(Relief(ship()).under_covers_place({9.0F, 0.0F, 0.3F})) << "without them";
 }
 
+TEST(Relief, AGapInACoamingLowersNoRim) {
+  Cloud cloud = ship();
+  std::erase_if(cloud, [](const Point& p) {  // 1 m of a side and a corner as good as cut away
+    const bool side = p.y() > 4.95F && p.y() < 5.05F && std::abs(p.x() - 1.0F) < 0.5F;
+    const bool corner = p.x() > 7.0F && p.x() < 8.05F && p.y() < -4.0F && p.y() > -5.05F;
+    return (side || corner) && p.z() > 0.75F && p.z() < 1.45F;
+  });
+  const Relief relief(cloud);
+  for (float x = -7.0F; x <= 7.0F; x += 0.7F) {
+    for (float y = -4.0F; y <= 4.0F; y += 0.7F) {
+      EXPECT_NEAR(relief.rim_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
+    }
+  }
+  EXPECT_FALSE(relief.in_covers_place({-3.0F, 5.0F, kRim})) << "the coaming's top";
+}
+
 TEST(Relief, AGapUnderALedgeIsNoHoldThatCoversLieOver) {
   Cloud cloud = ship();
   // Along one coaming, unseen from above: a gap of 0.4 m below a ledge that is lower than the coaming.
