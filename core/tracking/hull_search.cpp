@@ -14,6 +14,10 @@ constexpr std::size_t kMostStarts = 12;
 // Shifts nearer to a better one than this, in cells along every axis, are the same start.
 constexpr int kApart = 3;
 
+// Few surfaces hold an approach along the ship, or across her where little but decks is in view: it may stop
+// farther off than an alignment reaches.
+constexpr std::array<double, 4> kSlides{-0.4, -0.2, 0.2, 0.4};  // m
+
 // Stretches that challenges look at, one after the other: hatches are 15 to 35 m apart.
 constexpr double kStretch = 4.0;  // m
 constexpr int kStretches = 20;    // ten to either side
@@ -132,10 +136,27 @@ void HullSearch::score_places(std::span<const Point> few_W, PointToPlaneIcp& icp
   places_.resize(std::min(places_.size(), kMostPlaces));
 }
 
+Pose HullSearch::slide(std::span<const Point> few_W, const Pose& T_H_W, PointToPlaneIcp& icp) const {
+  Pose best = T_H_W;
+  double best_score = score(few_W, T_H_W, icp);
+  for (const int axis : {0, 1}) {
+    const Pose from = best;
+    for (const double by : kSlides) {
+      Pose T = from;
+      T.translation()[axis] += by;
+      if (const double worth = score(few_W, T, icp); worth > best_score) {
+        best = T;
+        best_score = worth;
+      }
+    }
+  }
+  return best;
+}
+
 void HullSearch::advance(std::span<const Point> few_W, std::size_t starts, PointToPlaneIcp& icp) {
   const std::size_t end = std::min(starts_.size(), next_ + starts);
   for (; next_ < end; ++next_) {
-    add({.T_H_W = icp.approach(few_W, map_->planes(), starts_[next_])});
+    add({.T_H_W = slide(few_W, icp.approach(few_W, map_->planes(), starts_[next_]), icp)});
   }
   score_places(few_W, icp);
 }

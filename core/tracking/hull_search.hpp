@@ -76,6 +76,8 @@ class HullSearch {
                                                          std::size_t most) const;
   [[nodiscard]] Pose shifted(const Eigen::Vector3d& shift_H, const Eigen::Matrix3d& R_W_H) const;
   void add(const Place& place);
+  /// The best of T_H_W and places some decimetres beside it, along the ship and across her.
+  [[nodiscard]] Pose slide(std::span<const Point> few_W, const Pose& T_H_W, PointToPlaneIcp& icp) const;
   void score_places(std::span<const Point> few_W, PointToPlaneIcp& icp);
 
   Eigen::Vector3d reference_H_;
