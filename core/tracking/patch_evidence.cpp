@@ -52,24 +52,13 @@ double sum_between(const Offsets& offsets, double low, double high) {
   return sum;
 }
 
-/// How many the map has.
-std::uint32_t structures_along(const std::vector<MapPatch>& mapped) {
-  std::vector<StructurePatch> all;
-  for (const MapPatch& patch : mapped) {
-    if (patch.faces == SurfaceClass::transverse) {
-      all.push_back({patch.pit, patch.place, false});
-    }
-  }
-  return count_structures(std::move(all)).in_place;
-}
-
 }  // namespace
 
 void PatchEvidence::reset(std::vector<MapPatch> mapped) {
   patches_.assign(mapped.size(), {});
   verdicts_.assign(mapped.size(), {});
   mapped_ = std::move(mapped);
-  mapped_along_ = structures_along(mapped_);
+  structures_ = Structures(mapped_);
   has_rims_ = std::any_of(mapped_.begin(), mapped_.end(),
                           [](const MapPatch& patch) { return patch.kind == PatchKind::rim; });
   strips_.clear();
@@ -202,22 +191,18 @@ void PatchEvidence::judge_strip_again(std::uint32_t patch) {
   }
 }
 
-/// By the patches that stand in place or displaced in the direction that they face.
-StructureCount PatchEvidence::structures(SurfaceClass faces) const {
-  std::vector<StructurePatch> solid;
-  for (std::size_t i = 0; i < mapped_.size(); ++i) {
-    const MapPatch& patch = mapped_[i];
-    const Verdict& verdict = verdicts_[i];
-    const bool is_rim = patch.kind == PatchKind::rim;
-    const bool displaced = is_rim ? verdict.aside : verdict.off_plane;
-    const bool in_place = is_rim ? verdict.in_line : verdict.state == PatchState::in_place;
-    if (patch.faces == faces && (displaced || in_place)) {
-      const Point& jumps_H = is_rim ? verdict.strip_jumps_H : verdict.jumps_H;
-      const float since = (jumps_H_ - jumps_H)[static_cast<Eigen::Index>(faces)];
-      solid.push_back({patch.pit, patch.place, displaced || std::abs(since) > kDisplaced});
-    }
+/// What a patch says about its structure, in the direction that it faces.
+void PatchEvidence::vote(std::uint32_t patch) {
+  const MapPatch& mapped = mapped_[patch];
+  const Verdict& verdict = verdicts_[patch];
+  const bool is_rim = mapped.kind == PatchKind::rim;
+  const bool displaced = is_rim ? verdict.aside : verdict.off_plane;
+  const bool in_place = is_rim ? verdict.in_line : verdict.state == PatchState::in_place;
+  if (mapped.faces != SurfaceClass::other && (displaced || in_place)) {
+    const Point& jumps_H = is_rim ? verdict.strip_jumps_H : verdict.jumps_H;
+    const float since = (jumps_H_ - jumps_H)[static_cast<Eigen::Index>(mapped.faces)];
+    structures_.vote(patch, displaced || std::abs(since) > kDisplaced);
   }
-  return count_structures(std::move(solid));
 }
 
 /// One structure takes the pose along wherever it stands; a second one that is in place too tells, as far as
@@ -226,12 +211,13 @@ StructureCount PatchEvidence::structures(SurfaceClass faces) const {
 bool PatchEvidence::has_seen_enough(const PatchReport& report) const {
   return frames_ >= kFramesToDecide && report.judged >= kFewestToDecide &&
          report.judged >= kShareToDecide * report.in_view && (report.rims_in_place > 0 || !has_rims_) &&
-         report.along.in_place >= std::min(kFewestStructures, mapped_along_);
+         report.along.in_place >= std::min(kFewestStructures, structures_.mapped(SurfaceClass::transverse));
 }
 
 PatchReport PatchEvidence::report() {
   PatchReport report;
   std::vector<float> offsets;
+  structures_.clear_votes();
   for (std::uint32_t i = 0; i < patches(); ++i) {
     const Verdict& verdict = verdicts_[i];
     if (patches_[i].last_frame == frame_) {
@@ -239,6 +225,7 @@ PatchReport PatchEvidence::report() {
       ++report.in_view;
       report.judged += verdict.state == PatchState::unknown ? 0 : 1;
     }
+    vote(i);
     const bool is_rim = mapped_[i].kind == PatchKind::rim;
     const bool elsewhere = verdict.off_plane || verdict.aside;
     if (elsewhere) {
@@ -254,8 +241,8 @@ PatchReport PatchEvidence::report() {
     report.solid += elsewhere || verdict.state == PatchState::in_place ? 1 : 0;
   }
   frames_ += report.in_view > 0 ? 1 : 0;
-  report.along = structures(SurfaceClass::transverse);
-  report.across = structures(SurfaceClass::longitudinal);
+  report.along = structures_.count(SurfaceClass::transverse);
+  report.across = structures_.count(SurfaceClass::longitudinal);
   decided_ = decided_ || has_seen_enough(report);
   report.decided = decided_;
   if (!offsets.empty()) {

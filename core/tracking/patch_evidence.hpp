@@ -97,7 +97,7 @@ class PatchEvidence {
 
   std::vector<Looks> patches_;
   std::vector<MapPatch> mapped_;
-  std::uint32_t mapped_along_ = 0;                   // structures that the map has along the ship
+  Structures structures_;                            // of the map
   bool has_rims_ = false;                            // the map
   std::unordered_map<std::uint32_t, Strip> strips_;  // of the patches that are rims
   struct Verdict {
@@ -112,7 +112,7 @@ class PatchEvidence {
   };
   void judge_again(std::uint32_t patch);
   void judge_strip_again(std::uint32_t patch);
-  [[nodiscard]] StructureCount structures(SurfaceClass faces) const;
+  void vote(std::uint32_t patch);
   [[nodiscard]] bool has_seen_enough(const PatchReport& report) const;
 
   std::vector<Verdict> verdicts_;
