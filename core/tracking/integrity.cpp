@@ -23,6 +23,8 @@ constexpr float kRaised = 0.03F;       // m: a rim that may be covered
 constexpr double kOtherPlace = PatchEvidence::kReach;  // m: from there on patches mean other surfaces
 constexpr double kJump = 0.05;                         // m: three sigma of a pose that is worth looking at
 constexpr double kGap = 0.25;  // s: two frames without evidence, on which nothing is booked
+// In a shorter time no ship leaves the berth and another one moors there.
+constexpr double kExchange = 300.0;  // s
 // Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
 constexpr float kSharedError = 1.0F / 16.0F;
 
@@ -152,7 +154,7 @@ void Integrity::follow_pose(const HullMap& map, MeasurementTime time, const Pose
     const Eigen::Vector3d moved_W = reference_W - weighed_->reference_W;
     const double moved = moved_W.norm();
     const bool jumped = moved > kJump + kFastestHull * std::min(dt, kGap);
-    if (jumped && (dt > kGap || moved > kOtherPlace)) {
+    if (dt > kExchange || (jumped && (dt > kGap || moved > kOtherPlace))) {
       evidence_.reset(map.patches());
     } else if (jumped) {
       evidence_.put_elsewhere((T_W_H.linear().transpose() * moved_W).cast<float>());

@@ -116,7 +116,7 @@ class Integrity {
   /// What the scan of the last run() says about the ship, at its pose but for report.step and bent by `bend`
   /// (m) along `shape`; fills report.patches. Once a frame, for the frame's own pose. What was seen belongs
   /// to one unbroken track: it is put elsewhere when the pose jumps, and forgotten when it comes back from a
-  /// gap, or from metres away, at another place.
+  /// gap, or from metres away, at another place, or after minutes out of sight at any.
   void weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
              const BendShape& shape, double bend, IntegrityReport& report);
 

@@ -205,6 +205,9 @@ TEST_F(IntegrityRun, WhatWasSeenAtAPlaceFromWhichNoShipComesIsForgotten) {
   EXPECT_EQ(displaced(22.0, 0.1, 1.0F), 0U) << "one hatch off within a frame, where all fits";
   ASSERT_EQ(displaced(0.0, 0.1, kLower), there);
   EXPECT_EQ(displaced(0.3, 60.0, 1.0F), 0U) << "unseen for a minute, and elsewhere since";
+  ASSERT_EQ(displaced(0.0, 0.1, kLower), there);
+  EXPECT_EQ(displaced(0.0, 100.0, 1.0F), there) << "unseen for minutes, and where she was: the same ship";
+  EXPECT_EQ(displaced(0.0, 400.0, 1.0F), 0U) << "time enough for another one to moor there";
 }
 
 TEST_F(IntegrityRun, WhereNoRayEndsNothingIsExpected) {
