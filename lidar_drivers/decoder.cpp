@@ -8,8 +8,12 @@ const char* return_mode_name(ReturnMode mode) {
       return "strongest";
     case ReturnMode::last:
       return "last";
+    case ReturnMode::first:
+      return "first";
     case ReturnMode::dual:
       return "dual";
+    case ReturnMode::triple:
+      return "triple";
     case ReturnMode::unknown:
       break;
   }

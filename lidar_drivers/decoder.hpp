@@ -1,8 +1,9 @@
 // What is in one datagram of a LiDAR: its points in L, each with its own firing time.
 //
 // Frame: L is x forward (zero azimuth), y left, z up, metres. Times are offsets to the datagram's LAST
-// firing, hence never positive. A decoder keeps no memory between datagrams and checks every byte: bad
-// input gives an outcome with figures, never an exception. Thread rule: one caller at a time.
+// firing, hence never positive. A decoder keeps nothing of one data datagram for the next and checks every
+// byte: bad input gives an outcome with figures, never an exception. What a sensor says about itself in
+// datagrams of their own goes through inform(). Thread rule: one caller at a time.
 // Cost: a datagram of 384 returns takes a few microseconds; nothing is allocated once `out` has grown.
 #pragma once
 
@@ -17,7 +18,7 @@
 
 namespace hulltrack {
 
-enum class ReturnMode : std::uint8_t { unknown, strongest, last, dual };
+enum class ReturnMode : std::uint8_t { unknown, strongest, last, first, dual, triple };
 
 /// Lower-case word of a return mode, for logs.
 [[nodiscard]] const char* return_mode_name(ReturnMode mode);
@@ -28,17 +29,25 @@ struct DecoderOptions {
   bool repeated_echoes = false;   // dual return: also emit the second of two identical echoes
 };
 
+/// The sensor's own count of datagrams.
+struct PacketCounter {
+  std::uint64_t value;
+  std::uint64_t wrap;  // it starts again at 0 after wrap - 1; > 0
+};
+
 struct DecodedPacket {
   std::vector<LidarPoint> points;  // in wire order; no point without a return; dt_ns <= 0
   Nanoseconds duration{};          // from the first to the last firing
   Nanoseconds interval{};          // from this first firing to the next datagram's, when none is lost
   Nanoseconds sensor_time{};       // the sensor's own clock at the last firing, modulo Decoder::clock_wrap()
   std::optional<Nanoseconds>
-      zero_crossing;           // when the rotor passed zero azimuth, if it did: as dt of a point
+      zero_crossing;  // when the rotor passed zero azimuth, if it did: as dt of a point
+  // Of a sensor that does not rotate these are 0.
   double first_azimuth = 0.0;  // rotor, rad, [0, 2 pi), at the first firing, clockwise seen from above
   double last_azimuth = 0.0;   // the same at the last firing
   double rotation_rate = 0.0;  // rad/s, >= 0
   ReturnMode return_mode = ReturnMode::unknown;
+  std::optional<PacketCounter> counter;  // where the format has one
   /// Where a sector begins that the sensor leaves out: rad, last azimuth before a jump inside the datagram.
   std::optional<double> cut_azimuth;
 };
@@ -50,6 +59,8 @@ enum class DecodeStatus : std::uint8_t {
   wrong_product,      // expected, seen: product code of the datagram
   wrong_return_mode,  // seen: return mode code that this model does not have
   bad_azimuth,        // seen: an angle (or step) that a rotating sensor cannot report, in sensor units
+  wrong_layout,       // expected, seen: a count, length or version in the datagram that this model has not
+  awaiting_angles,    // held back: the sensor has not told its lasers' angles yet
 };
 
 struct DecodeOutcome {
@@ -69,6 +80,10 @@ class Decoder {
   /// Replaces `out`. Unless the outcome is ok, `out` has no points and is otherwise unspecified.
   [[nodiscard]] virtual DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                              DecodedPacket& out) const = 0;
+
+  /// Takes in a datagram by which the sensor tells about itself (RoboSense: DIFOP). False: it is none, or
+  /// of another model; nothing has changed then.
+  virtual bool inform(std::span<const std::uint8_t> /*payload*/) { return false; }
 
   /// One clause for the log that names what was expected and what was seen.
   [[nodiscard]] virtual std::string explain(const DecodeOutcome& outcome) const = 0;

@@ -1,36 +1,25 @@
 #include "lidar_drivers/model_registry.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
+#include <vector>
 
-#include "lidar_drivers/velodyne/velodyne_decoder.hpp"
+#include "lidar_drivers/velodyne/velodyne_models.hpp"
 
 namespace hulltrack {
 
 namespace {
 
-constexpr std::uint16_t kVelodynePort = 2368;
-
-/// One factory a model, since a plain function cannot carry the table.
-template <std::size_t kIndex>
-Result<std::unique_ptr<Decoder>> make_velodyne(const DecoderOptions& options, const std::filesystem::path&) {
-  return std::unique_ptr<Decoder>(
-      std::make_unique<velodyne::VelodyneDecoder>(velodyne::models()[kIndex], options));
-}
-
-template <std::size_t kIndex>
-LidarModel velodyne_model() {
-  const velodyne::ModelTable& table = velodyne::models()[kIndex];
-  return {table.name,  "Velodyne",     table.title, kVelodynePort,
-          table.range, table.channels, false,       &make_velodyne<kIndex>};
+std::vector<LidarModel> all_models() {
+  std::vector<LidarModel> all;
+  for (const auto& vendor : {velodyne::lidar_models()}) all.insert(all.end(), vendor.begin(), vendor.end());
+  return all;
 }
 
 }  // namespace
 
 std::span<const LidarModel> lidar_models() {
-  static const std::array kModels = {velodyne_model<0>(), velodyne_model<1>(), velodyne_model<2>(),
-                                     velodyne_model<3>()};
+  static const std::vector<LidarModel> kModels = all_models();
   return kModels;
 }
 
@@ -42,8 +31,12 @@ const LidarModel* find_lidar_model(std::string_view name) {
 
 Result<std::unique_ptr<Decoder>> make_lidar_decoder(const LidarModel& model, const DecoderOptions& options,
                                                     const std::filesystem::path& calibration) {
-  if (!model.needs_calibration && !calibration.empty())
+  using Calibration = LidarModel::Calibration;
+  if (model.calibration == Calibration::none && !calibration.empty())
     return Error{std::string(model.name) + " takes no calibration file; leave it out"};
+  if (model.calibration == Calibration::required && calibration.empty())
+    return Error{std::string(model.name) +
+                 " needs a calibration file: " + std::string(model.calibration_file)};
   return model.make_decoder(options, calibration);
 }
 

@@ -1,32 +1,18 @@
 // Which LiDAR models there are: the one list that the configuration, the tools and the builder read.
 //
-// A new vendor adds a folder with its decoder and its lines in model_registry.cpp; nothing else changes.
+// A new vendor adds a folder with its decoder and a line in model_registry.cpp; nothing else changes.
 // Thread rule: immutable.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
 
 #include "core/base/result.hpp"
-#include "lidar_drivers/decoder.hpp"
+#include "lidar_drivers/lidar_model.hpp"
 
 namespace hulltrack {
-
-struct LidarModel {
-  std::string_view name;  // as in the configuration
-  std::string_view vendor;
-  std::string_view title;  // the maker's own name
-  std::uint16_t port;      // UDP port from the factory
-  double range;            // m, the maker's statement
-  int channels;
-  bool needs_calibration;  // a file must be given
-  /// Through make_lidar_decoder().
-  Result<std::unique_ptr<Decoder>> (*make_decoder)(const DecoderOptions&,
-                                                   const std::filesystem::path& calibration);
-};
 
 /// Every model, in the order in which `hulltrack models` lists them.
 [[nodiscard]] std::span<const LidarModel> lidar_models();

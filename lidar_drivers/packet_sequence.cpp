@@ -56,6 +56,7 @@ PacketSequence::Step PacketSequence::note(std::span<const std::uint8_t> bytes, c
   newest_interval_ = packet.interval;
   newest_received_ = received;
   newest_azimuth_ = packet.last_azimuth;
+  newest_counter_ = packet.counter;
   if (packet.cut_azimuth) cut_azimuth_ = packet.cut_azimuth;
   return step;
 }
@@ -75,6 +76,13 @@ bool PacketSequence::seen_before(std::span<const std::uint8_t> bytes) {
 std::uint32_t PacketSequence::lost_between(const DecodedPacket& packet, Nanoseconds elapsed) const {
   const Nanoseconds first_to_first = elapsed - packet.duration + newest_duration_;
   if (packet.interval <= Nanoseconds::zero() || first_to_first > kLongestLoss) return 0;
+  if (packet.counter && newest_counter_) {
+    const std::uint64_t wrap = packet.counter->wrap;
+    const std::uint64_t steps = (packet.counter->value + wrap - newest_counter_->value % wrap) % wrap;
+    // No more than the time has room for: a counter may begin again.
+    const auto most = static_cast<std::uint64_t>(first_to_first / packet.interval + 1);
+    return static_cast<std::uint32_t>(std::min(steps == 0 ? 0 : steps - 1, most));
+  }
   if (cut_azimuth_) {
     const double off = std::abs(std::remainder(newest_azimuth_ - *cut_azimuth_, 2.0 * std::numbers::pi));
     if (off < kCutTolerance) return 0;

@@ -1,7 +1,8 @@
 // Where does a datagram stand among its neighbours: next, missing some, late, or seen before?
 //
 // Works on the sensor's own clock, which is exact to a microsecond where receive stamps jitter, and needs it
-// only to run evenly: a clock that is wrong, or starts again, is followed. Sectors that the sensor
+// only to run evenly: a clock that is wrong, or starts again, is followed. What is missing the sensor's count
+// of datagrams tells where it has one, else the time between two of them. Sectors that the sensor
 // itself leaves out are not taken for losses. Thread rule: one caller. Cost: one hash of the bytes.
 #pragma once
 
@@ -51,6 +52,7 @@ class PacketSequence {
   MeasurementTime newest_received_{};
   double newest_azimuth_ = 0.0;  // rad, at the last firing
   std::optional<double> cut_azimuth_;
+  std::optional<PacketCounter> newest_counter_;
 };
 
 }  // namespace hulltrack

@@ -1,5 +1,7 @@
 #include "daemon/simulator/packets_ahead.hpp"
 
+#include <utility>
+
 namespace hulltrack {
 
 PacketsAhead::PacketsAhead(const SimulatedBerth& berth)
@@ -9,10 +11,10 @@ void PacketsAhead::cast_all(const std::stop_token& stop) {
   std::exception_ptr failure;
   try {
     for (std::uint64_t number = 0; number < berth_->packets(); ++number) {
-      const SimulatedBerth::Packet packet = berth_->packet(number);
+      SimulatedBerth::Packet packet = berth_->packet(number);
       std::unique_lock lock(mutex_);
       if (!changed_.wait(lock, stop, [&] { return ready_.size() < kReady; })) return;
-      ready_.push_back(packet);
+      ready_.push_back(std::move(packet));
       changed_.notify_all();
     }
   } catch (...) {
@@ -36,7 +38,7 @@ std::optional<SimulatedBerth::Packet> PacketsAhead::take() {
     if (failure_) std::rethrow_exception(failure_);
     return std::nullopt;
   }
-  const SimulatedBerth::Packet packet = ready_.front();
+  SimulatedBerth::Packet packet = std::move(ready_.front());
   ready_.pop_front();
   changed_.notify_all();
   return packet;

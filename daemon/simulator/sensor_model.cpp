@@ -48,7 +48,7 @@ double received_power(const RayHit& hit) {
   return reflectivity(hit.material) * static_cast<double>(hit.cos_incidence) / (range * range);
 }
 
-Echoes only(const sim::VelodyneReturn& echo) { return {echo, echo}; }
+Echoes only(const sim::LaserReturn& echo) { return {echo, echo}; }
 
 }  // namespace
 
@@ -89,7 +89,7 @@ Echoes measure(const SensorTraits& sensor, const RayHit& middle, const std::opti
   const double other_power = other ? (1.0 - share) * received_power(*other) : 0.0;
   const double power = (middle_power + other_power) * speckle;
   const double faintest = kDarkReflectivity / (sensor.range_of_dark * sensor.range_of_dark);
-  const auto echo = [&](double surface, double its_power) -> sim::VelodyneReturn {
+  const auto echo = [&](double surface, double its_power) -> sim::LaserReturn {
     const double range = surface + noise;
     if (its_power < faintest || range < sensor.min_range) return {};
     return {range, static_cast<std::uint8_t>(std::clamp(100.0 * its_power * range * range, 1.0, 100.0))};

@@ -15,7 +15,7 @@
 #include "core/base/result.hpp"
 #include "daemon/simulator/random.hpp"
 #include "daemon/simulator/ray_scene.hpp"
-#include "lidar_drivers/sim/velodyne_encoder.hpp"
+#include "lidar_drivers/sim/lidar_encoder.hpp"
 
 namespace hulltrack {
 
@@ -40,10 +40,10 @@ struct SensorTraits {
 
 /// The echoes of one pulse: at most two, the same twice when there is only one. Range 0: none.
 struct Echoes {
-  sim::VelodyneReturn first, last;
+  sim::LaserReturn first, last;
   bool last_is_strongest = true;
 
-  [[nodiscard]] const sim::VelodyneReturn& strongest() const { return last_is_strongest ? last : first; }
+  [[nodiscard]] const sim::LaserReturn& strongest() const { return last_is_strongest ? last : first; }
 };
 
 /// The echoes of a beam whose middle and whose other ray met these surfaces. (A beam whose middle meets

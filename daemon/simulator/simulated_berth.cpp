@@ -7,6 +7,7 @@
 #include "daemon/simulator/loader_machine.hpp"
 #include "daemon/simulator/ship_mesh.hpp"
 #include "daemon/simulator/survey.hpp"
+#include "lidar_drivers/sim/encoder_registry.hpp"
 
 namespace hulltrack {
 namespace {
@@ -90,18 +91,19 @@ Result<std::unique_ptr<SimulatedBerth>> SimulatedBerth::create(const SimulationO
     return Error{"the ship of scenario \"" + options.scenario +
                  "\" never gets under way: leave out the time to leave"};
   RandomStream random(options.seed, 500);
-  sim::VelodyneEncoderConfig config;
+  sim::LidarEncoderConfig config;
   config.return_mode = options.return_mode;
   config.rpm = kRpm;
   config.start_azimuth = random.uniform(0.0, 2.0 * std::numbers::pi);
-  config.time_of_hour = kEpoch.time_since_epoch() % velodyne::kClockWrap;
-  auto encoder = sim::VelodyneEncoder::create(sensor->model, config);
+  config.utc = kEpoch.time_since_epoch();
+  auto encoder = sim::make_lidar_encoder(sensor->model, config);
   if (!encoder) return encoder.error();
-  return std::unique_ptr<SimulatedBerth>(new SimulatedBerth(options, *scenario, *sensor, *encoder));
+  return std::unique_ptr<SimulatedBerth>(
+      new SimulatedBerth(options, *scenario, *sensor, std::move(*encoder)));
 }
 
 SimulatedBerth::SimulatedBerth(const SimulationOptions& options, const Scenario& scenario,
-                               const SensorTraits& sensor, sim::VelodyneEncoder encoder)
+                               const SensorTraits& sensor, std::unique_ptr<const sim::LidarEncoder> encoder)
     : options_(options),
       scenario_(&scenario),
       sensor_(&sensor),
@@ -115,20 +117,20 @@ SimulatedBerth::SimulatedBerth(const SimulationOptions& options, const Scenario&
       world_(std::make_unique<BerthWorld>(shaped_meshes_H(scenario.ship_at_berth, change_), change_, loader_,
                                           hull_, sensor.mount, scenario.crane)) {
   const Nanoseconds end = frames_ * kFramePeriod;
-  packets_ = static_cast<std::uint64_t>(end / encoder_.packet_interval());
-  while (packets_ > 0 && encoder_.last_firing(packets_ - 1) >= end) --packets_;
+  packets_ = static_cast<std::uint64_t>(end / encoder_->packet_interval());
+  while (packets_ > 0 && encoder_->last_firing(packets_ - 1) >= end) --packets_;
 }
 
-std::vector<sim::VelodyneReturn> SimulatedBerth::returns(std::uint64_t number) const {
-  std::vector<sim::VelodyneFiring> firings;
-  encoder_.firings(number, firings);
+std::vector<sim::LaserReturn> SimulatedBerth::returns(std::uint64_t number) const {
+  std::vector<sim::LaserFiring> firings;
+  encoder_->firings(number, firings);
   const auto sweep = world_->sweep(to_seconds(firings.front().time), to_seconds(firings.back().time));
   const DustPlume::Now dust = dust_.at(sweep.begin);
   RandomStream random(options_.seed, 600, number);
   RandomStream air_random(options_.seed, 610, number);
-  std::vector<sim::VelodyneReturn> returns;
+  std::vector<sim::LaserReturn> returns;
   returns.reserve(2 * firings.size());
-  for (const sim::VelodyneFiring& firing : firings) {
+  for (const sim::LaserFiring& firing : firings) {
     const Echoes echoes = scenario_->cover.hides(to_seconds(firing.time), firing.azimuth)
                               ? behind_cover(air_random)
                               : through_air(sweep, dust, firing, surface(sweep, firing, random), air_random);
@@ -147,9 +149,9 @@ std::vector<sim::VelodyneReturn> SimulatedBerth::returns(std::uint64_t number) c
   return returns;
 }
 
-Echoes SimulatedBerth::surface(const BerthWorld::Sweep& sweep, const sim::VelodyneFiring& firing,
+Echoes SimulatedBerth::surface(const BerthWorld::Sweep& sweep, const sim::LaserFiring& firing,
                                RandomStream& random) const {
-  const Point origin(0.0F, 0.0F, static_cast<float>(firing.origin_z));
+  const Point origin = firing.origin.cast<float>();
   const Point direction = firing.direction.cast<float>();
   const double t = to_seconds(firing.time);
   const auto reach = static_cast<float>(sensor_->max_range);
@@ -160,11 +162,11 @@ Echoes SimulatedBerth::surface(const BerthWorld::Sweep& sweep, const sim::Velody
 }
 
 Echoes SimulatedBerth::through_air(const BerthWorld::Sweep& sweep, const DustPlume::Now& dust,
-                                   const sim::VelodyneFiring& firing, Echoes echoes,
+                                   const sim::LaserFiring& firing, Echoes echoes,
                                    RandomStream& random) const {
   const double t = to_seconds(firing.time);
   if (scenario_->dust > 0.0) {
-    const Point origin(0.0F, 0.0F, static_cast<float>(firing.origin_z));
+    const Point origin = firing.origin.cast<float>();
     const auto [origin_W, direction_W] = BerthWorld::ray_W(sweep, t, origin, firing.direction.cast<float>());
     const double reach = echoes.first.range > 0.0 ? echoes.first.range : sensor_->max_range;
     if (const auto at = dust_.stops(dust, origin_W, direction_W, static_cast<float>(reach), random))
@@ -176,7 +178,7 @@ Echoes SimulatedBerth::through_air(const BerthWorld::Sweep& sweep, const DustPlu
 }
 
 SimulatedBerth::Packet SimulatedBerth::packet(std::uint64_t number) const {
-  return encoder_.encode(number, returns(number));
+  return encoder_->encode(number, returns(number));
 }
 
 HullPose SimulatedBerth::truth(Nanoseconds time) const {

@@ -6,7 +6,6 @@
 // Failure: create() says what is unknown. Memory: some MB; a datagram of 384 rays takes about 0.5 ms.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -42,7 +41,7 @@ class SimulatedBerth {
   static constexpr Nanoseconds kFramePeriod = std::chrono::milliseconds(100);
   /// 2026-01-01 07:10:00 UTC.
   static constexpr MeasurementTime kEpoch{std::chrono::seconds(1'767'251'400)};
-  using Packet = std::array<std::uint8_t, velodyne::kPacketBytes>;
+  using Packet = std::vector<std::uint8_t>;
 
   [[nodiscard]] static Result<std::unique_ptr<SimulatedBerth>> create(const SimulationOptions& options);
 
@@ -54,12 +53,12 @@ class SimulatedBerth {
   /// Datagrams that lie wholly within the first frames() frame periods.
   [[nodiscard]] std::uint64_t packets() const { return packets_; }
   /// Time of the datagram's last firing: when it is sent.
-  [[nodiscard]] Nanoseconds sent(std::uint64_t packet) const { return encoder_.last_firing(packet); }
+  [[nodiscard]] Nanoseconds sent(std::uint64_t packet) const { return encoder_->last_firing(packet); }
   [[nodiscard]] Packet packet(std::uint64_t number) const;
   /// What the sensor measured for each firing of the datagram, in wire order; range 0 = nothing. With dual
   /// return two a firing, as the encoder wants them.
-  [[nodiscard]] std::vector<sim::VelodyneReturn> returns(std::uint64_t number) const;
-  [[nodiscard]] const sim::VelodyneEncoder& encoder() const { return encoder_; }
+  [[nodiscard]] std::vector<sim::LaserReturn> returns(std::uint64_t number) const;
+  [[nodiscard]] const sim::LidarEncoder& encoder() const { return *encoder_; }
 
   /// Where the reference point is and how the hull lies there: of a bent hull the tangent frame at that point
   /// of the ship.
@@ -87,20 +86,19 @@ class SimulatedBerth {
 
  private:
   SimulatedBerth(const SimulationOptions& options, const Scenario& scenario, const SensorTraits& sensor,
-                 sim::VelodyneEncoder encoder);
+                 std::unique_ptr<const sim::LidarEncoder> encoder);
 
   /// What comes back of one firing from the berth's surfaces, and what of that arrives.
-  [[nodiscard]] Echoes surface(const BerthWorld::Sweep& sweep, const sim::VelodyneFiring& firing,
+  [[nodiscard]] Echoes surface(const BerthWorld::Sweep& sweep, const sim::LaserFiring& firing,
                                RandomStream& random) const;
   [[nodiscard]] Echoes through_air(const BerthWorld::Sweep& sweep, const DustPlume::Now& dust,
-                                   const sim::VelodyneFiring& firing, Echoes echoes,
-                                   RandomStream& random) const;
+                                   const sim::LaserFiring& firing, Echoes echoes, RandomStream& random) const;
 
   SimulationOptions options_;
   const Scenario* scenario_;
   const SensorTraits* sensor_;
   int frames_;
-  sim::VelodyneEncoder encoder_;
+  std::unique_ptr<const sim::LidarEncoder> encoder_;
   LoaderMotion loader_;
   HullMotion hull_;
   ShapeChange change_;

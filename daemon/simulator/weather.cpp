@@ -14,8 +14,8 @@ double drop_range(double nearest, double farthest, RandomStream& random) {
   return nearest - kScale * std::log(1.0 - most * random.uniform());
 }
 
-sim::VelodyneReturn dimmed(const Weather& weather, const SensorTraits& sensor,
-                           const sim::VelodyneReturn& clear, double noise, double luck) {
+sim::LaserReturn dimmed(const Weather& weather, const SensorTraits& sensor, const sim::LaserReturn& clear,
+                        double noise, double luck) {
   if (clear.range <= 0.0) return {};
   const double depth = clear.range / weather.visibility;
   if (luck < depth * depth) return {};
@@ -37,14 +37,14 @@ bool WindowCover::hides(double t, double azimuth) const {
 Echoes behind_cover(RandomStream& random) {
   constexpr double kReturnShare = 0.3;
   if (random.uniform() >= kReturnShare) return {};
-  const sim::VelodyneReturn near{random.uniform(0.4, 0.95), 20};
+  const sim::LaserReturn near{random.uniform(0.4, 0.95), 20};
   return {near, near};
 }
 
 Echoes behind_particle(double range, const Echoes& echoes, RandomStream& random) {
   constexpr double kPastIt = 0.5;
   constexpr std::uint8_t kShine = 3;
-  const sim::VelodyneReturn particle{range, kShine};
+  const sim::LaserReturn particle{range, kShine};
   const bool surface_too = random.uniform() < kPastIt && echoes.last.range > 0.0;
   return {particle, surface_too ? echoes.last : particle, false};
 }
@@ -55,7 +55,7 @@ Echoes through_weather(const Weather& weather, const SensorTraits& sensor, const
   const double luck = random.uniform();
   const double noise = random.gaussian();
   const double lost = random.uniform();
-  const auto seen_of = [&](const sim::VelodyneReturn& echo) {
+  const auto seen_of = [&](const sim::LaserReturn& echo) {
     return dimmed(weather, sensor, echo, noise, lost);
   };
   Echoes seen{seen_of(echoes.first), seen_of(echoes.last), echoes.last_is_strongest};

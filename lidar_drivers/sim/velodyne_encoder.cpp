@@ -17,8 +17,7 @@ std::uint8_t mode_code(ReturnMode mode) {
       return velodyne::kModeLast;
     case ReturnMode::dual:
       return velodyne::kModeDual;
-    case ReturnMode::strongest:
-    case ReturnMode::unknown:
+    default:
       break;
   }
   return velodyne::kModeStrongest;
@@ -31,19 +30,20 @@ std::uint16_t distance_code(double range, double unit) {
 
 }  // namespace
 
-Result<VelodyneEncoder> VelodyneEncoder::create(std::string_view model, const VelodyneEncoderConfig& config) {
+Result<VelodyneEncoder> VelodyneEncoder::create(std::string_view model, const LidarEncoderConfig& config) {
   const velodyne::ModelTable* table = velodyne::find_model(model);
   if (table == nullptr) return Error{"no Velodyne model is called \"" + std::string(model) + "\""};
   if (!(config.rpm > 0.0 && config.rpm <= velodyne::kMaxRpm)) {
     return Error{"a Velodyne cannot turn at " + std::to_string(config.rpm) + " rpm; allowed is (0, " +
                  std::to_string(velodyne::kMaxRpm) + "]"};
   }
-  if (config.return_mode == ReturnMode::unknown)
+  const ReturnMode mode = config.return_mode;
+  if (mode != ReturnMode::strongest && mode != ReturnMode::last && mode != ReturnMode::dual)
     return Error{"a Velodyne's return mode is strongest, last or dual"};
   return VelodyneEncoder(*table, config);
 }
 
-VelodyneEncoder::VelodyneEncoder(const velodyne::ModelTable& model, const VelodyneEncoderConfig& config)
+VelodyneEncoder::VelodyneEncoder(const velodyne::ModelTable& model, const LidarEncoderConfig& config)
     : model_(&model), config_(config) {}
 
 int VelodyneEncoder::groups() const {
@@ -61,21 +61,13 @@ Nanoseconds VelodyneEncoder::packet_duration() const {
   return (groups() - 1) * model_->block_period + model_->slots.back().time;
 }
 
-Nanoseconds VelodyneEncoder::first_firing(std::uint64_t packet) const {
-  return static_cast<Nanoseconds::rep>(packet) * packet_interval();
-}
-
-Nanoseconds VelodyneEncoder::last_firing(std::uint64_t packet) const {
-  return first_firing(packet) + packet_duration();
-}
-
 double VelodyneEncoder::rotor_azimuth(Nanoseconds time) const {
   const double turned = degrees(config_.start_azimuth) + config_.rpm * 6.0 * to_seconds(time);
   const double within = std::fmod(turned, 360.0);
   return within < 0.0 ? within + 360.0 : within;
 }
 
-void VelodyneEncoder::firings(std::uint64_t packet, std::vector<VelodyneFiring>& out) const {
+void VelodyneEncoder::firings(std::uint64_t packet, std::vector<LaserFiring>& out) const {
   out.clear();
   for (int group = 0; group < groups(); ++group) {
     const Nanoseconds block = first_firing(packet) + group * model_->block_period;
@@ -85,16 +77,16 @@ void VelodyneEncoder::firings(std::uint64_t packet, std::vector<VelodyneFiring>&
       const double elevation = radians(slot.elevation_deg);
       const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
                                       -std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-      out.push_back({time, azimuth, elevation, slot.vertical_offset_m, direction, slot.channel});
+      out.push_back({time, azimuth, elevation, {0.0, 0.0, slot.vertical_offset_m}, direction, slot.channel});
     }
   }
 }
 
-std::array<std::uint8_t, velodyne::kPacketBytes> VelodyneEncoder::encode(
-    std::uint64_t packet, std::span<const VelodyneReturn> returns) const {
+std::vector<std::uint8_t> VelodyneEncoder::encode(std::uint64_t packet,
+                                                  std::span<const LaserReturn> returns) const {
   const bool dual = config_.return_mode == ReturnMode::dual;
   assert(returns.size() == firings_per_packet() * (dual ? 2 : 1));
-  std::array<std::uint8_t, velodyne::kPacketBytes> bytes{};
+  std::vector<std::uint8_t> bytes(velodyne::kPacketBytes);
   for (std::size_t block = 0; block < velodyne::kBlocks; ++block) {
     const std::size_t group = dual ? block / 2 : block;
     const Nanoseconds time = first_firing(packet) + static_cast<int>(group) * model_->block_period;
@@ -104,14 +96,14 @@ std::array<std::uint8_t, velodyne::kPacketBytes> VelodyneEncoder::encode(
     write_le16(bytes, base + 2, static_cast<std::uint16_t>(azimuth));
     for (std::size_t slot = 0; slot < velodyne::kSlots; ++slot) {
       const std::size_t firing = group * velodyne::kSlots + slot;
-      const VelodyneReturn& hit = dual ? returns[2 * firing + block % 2] : returns[firing];
+      const LaserReturn& hit = dual ? returns[2 * firing + block % 2] : returns[firing];
       const std::size_t at = base + velodyne::kBlockHeaderBytes + slot * velodyne::kSlotBytes;
       const std::uint16_t distance = distance_code(hit.range, model_->distance_unit);
       write_le16(bytes, at, distance);
       bytes[at + 2] = distance == 0 ? std::uint8_t{0} : hit.intensity;
     }
   }
-  const Nanoseconds clock = (config_.time_of_hour + first_firing(packet)) % velodyne::kClockWrap;
+  const Nanoseconds clock = (config_.utc + first_firing(packet)) % velodyne::kClockWrap;
   write_le32(bytes, velodyne::kTimestampOffset, static_cast<std::uint32_t>(clock.count() / 1000));
   bytes[velodyne::kReturnModeOffset] = mode_code(config_.return_mode);
   bytes[velodyne::kProductOffset] = model_->product;

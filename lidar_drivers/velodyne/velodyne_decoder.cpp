@@ -122,6 +122,7 @@ DecodeOutcome VelodyneDecoder::decode(std::span<const std::uint8_t> payload, Dec
   out.return_mode = return_mode_of(payload[kReturnModeOffset]);
   out.zero_crossing.reset();
   out.cut_azimuth.reset();
+  out.counter.reset();
   for (std::size_t g = 0; g < rotation.groups; ++g) {
     const bool has_next = g < last;
     if (has_next && rotation.jump[g]) out.cut_azimuth = centidegrees_to_rad(rotation.azimuth[g]);
@@ -253,6 +254,8 @@ std::string VelodyneDecoder::explain(const DecodeOutcome& outcome) const {
       std::snprintf(text, sizeof text, "expected the azimuths of a turning sensor, saw %.2f deg",
                     outcome.seen * 0.01);
       return text;
+    default:  // other vendors'
+      break;
   }
   return "unknown";
 }

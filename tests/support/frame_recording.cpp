@@ -35,10 +35,10 @@ class Caster {
   Caster(const Pose& mount, const Pose& T_W_H, std::uint32_t seed)
       : mount_(mount), T_H_W_(T_W_H.inverse()), rng_(seed) {}
 
-  sim::VelodyneReturn cast(const sim::VelodyneFiring& firing) {
+  sim::LaserReturn cast(const sim::LaserFiring& firing) {
     // Clutter moves with the hull here, which the clock does not notice.
     const Pose T_H_L = T_H_W_ * lidar_pose(MachineConfig{}, joints_at(firing.time), mount_);
-    const Eigen::Vector3d origin = T_H_L * Eigen::Vector3d(0.0, 0.0, firing.origin_z);
+    const Eigen::Vector3d origin = T_H_L * firing.origin;
     auto [range, on_hull] =
         target_.cast(origin.cast<float>(), (T_H_L.linear() * firing.direction).cast<float>());
     if (uniform_(rng_) < kDust) {
@@ -76,12 +76,12 @@ FrameRecording record_frames(int frames, std::uint32_t seed) {
       sim::VelodyneEncoder::create(recording.lidar.model, {.rpm = 60.0 * kTurnsPerSecond}).value();
   Caster caster(recording.lidar.mount, recording.T_W_H, seed);
   const auto length = nanoseconds_from_ms(1e3 * frames / kTurnsPerSecond) + 2 * sensor.packet_interval();
-  std::vector<sim::VelodyneFiring> firings;
-  std::vector<sim::VelodyneReturn> returns;
+  std::vector<sim::LaserFiring> firings;
+  std::vector<sim::LaserReturn> returns;
   for (std::uint64_t packet = 0; sensor.first_firing(packet) < length; ++packet) {
     sensor.firings(packet, firings);
     returns.clear();
-    for (const sim::VelodyneFiring& firing : firings) {
+    for (const sim::LaserFiring& firing : firings) {
       returns.push_back(caster.cast(firing));
     }
     recording.datagrams.push_back({kStart + sensor.last_firing(packet), sensor.encode(packet, returns)});

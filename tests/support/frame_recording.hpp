@@ -13,13 +13,12 @@
 #include "core/kinematics/joint_history.hpp"
 #include "daemon/config/config.hpp"
 #include "lidar_drivers/scan_builder.hpp"
-#include "lidar_drivers/velodyne/velodyne_format.hpp"
 
 namespace hulltrack::bench {
 
 struct RecordedDatagram {
   MeasurementTime received;
-  std::array<std::uint8_t, velodyne::kPacketBytes> bytes;
+  std::vector<std::uint8_t> bytes;
 };
 
 struct FrameRecording {

@@ -91,14 +91,14 @@ void RoomLidar::run(const std::stop_token& stop, std::uint16_t port) {
   const sim::VelodyneEncoder& sensor = made.value();
   Sender sender(port, source_ip_);
   const Pose T_W_L = mount();
-  std::vector<sim::VelodyneFiring> firings;
-  std::vector<sim::VelodyneReturn> returns;
+  std::vector<sim::LaserFiring> firings;
+  std::vector<sim::LaserReturn> returns;
   const auto start = std::chrono::steady_clock::now();
   for (std::uint64_t packet = 0; !stop.stop_requested(); ++packet) {
     sensor.firings(packet, firings);
     returns.clear();
-    for (const sim::VelodyneFiring& firing : firings) {
-      const Eigen::Vector3d origin = T_W_L * Eigen::Vector3d(0.0, 0.0, firing.origin_z);
+    for (const sim::LaserFiring& firing : firings) {
+      const Eigen::Vector3d origin = T_W_L * firing.origin;
       returns.push_back({range(origin, T_W_L.linear() * firing.direction), 100});
     }
     const auto bytes = sensor.encode(packet, returns);

@@ -43,7 +43,7 @@ struct VelodyneStream {
 
 struct StreamOptions {
   std::string model = "velodyne_vlp16";
-  sim::VelodyneEncoderConfig encoder = {};
+  sim::LidarEncoderConfig encoder = {};
   MeasurementTime start = measurement_time_from_ns(1'700'000'000'000'000'000);
   std::size_t packets = 100;
   unsigned seed = 1;
@@ -58,18 +58,18 @@ inline VelodyneStream make_stream(const StreamOptions& options) {
   std::uniform_int_distribution<int> intensity(0, 255);
   std::uniform_int_distribution<int> percent(0, 99);
   VelodyneStream stream;
-  std::vector<sim::VelodyneFiring> firings;
+  std::vector<sim::LaserFiring> firings;
   for (std::uint64_t n = 0; n < options.packets; ++n) {
     encoder.firings(n, firings);
-    std::vector<sim::VelodyneReturn> returns;
+    std::vector<sim::LaserReturn> returns;
     for (std::size_t i = 0; i < firings.size(); ++i) {
       const bool hit = percent(random) < 80;
-      const sim::VelodyneReturn last{hit ? range_mm(random) * 1e-3 : 0.0,
-                                     static_cast<std::uint8_t>(intensity(random))};
+      const sim::LaserReturn last{hit ? range_mm(random) * 1e-3 : 0.0,
+                                  static_cast<std::uint8_t>(intensity(random))};
       returns.push_back(last);
       if (!dual) continue;
       const bool one_echo = percent(random) < 70;
-      returns.push_back(one_echo ? last : sim::VelodyneReturn{last.range / 2.0, last.intensity});
+      returns.push_back(one_echo ? last : sim::LaserReturn{last.range / 2.0, last.intensity});
     }
     const auto bytes = encoder.encode(n, returns);
     stream.packets.push_back({{bytes.begin(), bytes.end()}, options.start + encoder.last_firing(n)});
@@ -77,11 +77,11 @@ inline VelodyneStream make_stream(const StreamOptions& options) {
     for (std::size_t group = 0; group < firings.size(); group += velodyne::kSlots) {
       for (std::size_t echo = 0; echo < echoes; ++echo) {
         for (std::size_t slot = 0; slot < velodyne::kSlots; ++slot) {
-          const sim::VelodyneFiring& firing = firings[group + slot];
-          const sim::VelodyneReturn& hit = returns[(group + slot) * echoes + echo];
+          const sim::LaserFiring& firing = firings[group + slot];
+          const sim::LaserReturn& hit = returns[(group + slot) * echoes + echo];
           if (hit.range == 0.0) continue;
-          stream.returns.push_back({Eigen::Vector3d(0, 0, firing.origin_z) + hit.range * firing.direction,
-                                    options.start + firing.time, firing.channel, hit.intensity, hit.range});
+          stream.returns.push_back({firing.origin + hit.range * firing.direction, options.start + firing.time,
+                                    firing.channel, hit.intensity, hit.range});
         }
       }
     }

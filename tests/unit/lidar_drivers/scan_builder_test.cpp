@@ -225,7 +225,7 @@ TEST(ScanBuilder, DatagramsOutOfOrderAndTwiceLeaveTheFrameAsItWas) {
 
 TEST(ScanBuilder, LossIsCountedFromTheSensorsClockAcrossTheHour) {
   test::StreamOptions options{.packets = 2000};
-  options.encoder.time_of_hour = seconds(3599);
+  options.encoder.utc = seconds(3599);
   auto stream = test::make_stream(options);
   std::vector<test::StreamPacket> kept;
   std::size_t dropped = 0;
@@ -387,7 +387,7 @@ TEST(ScanBuilder, AChangeOfReturnModeIsCountedAndDecoded) {
   test::StreamOptions later{.packets = 50};
   later.encoder.return_mode = ReturnMode::dual;
   later.start = stream.packets.back().last_firing + milliseconds(1);
-  later.encoder.time_of_hour = later.start - test::StreamOptions{}.start;
+  later.encoder.utc = later.start - test::StreamOptions{}.start;
   const auto dual = test::make_stream(later);
   stream.packets.insert(stream.packets.end(), dual.packets.begin(), dual.packets.end());
   auto builder = builder_for({lidar()});
@@ -406,7 +406,7 @@ TEST(ScanBuilder, SensorTimeIsUsedWhileItAgreesWithTheHost) {
                                          {milliseconds(-5), true},
                                          {seconds(37), false},
                                          {-into_hour, false}}) {  // clock started at zero
-    options.encoder.time_of_hour = (into_hour + offset + seconds(3600)) % seconds(3600);
+    options.encoder.utc = (into_hour + offset + seconds(3600)) % seconds(3600);
     const auto stream = test::make_stream(options);
     auto builder = builder_for({config});
     const auto scans = build(builder, stream.packets);

@@ -23,8 +23,7 @@ TEST_P(VelodyneRoundTrip, EveryReturnComesBackWhereAndWhenItWasFired) {
   options.encoder.return_mode = GetParam().mode;
   options.encoder.rpm = GetParam().rpm;
   options.encoder.start_azimuth = 6.1;
-  options.encoder.time_of_hour =
-      std::chrono::seconds(3599) + std::chrono::milliseconds(990);  // wraps on the way
+  options.encoder.utc = std::chrono::seconds(3599) + std::chrono::milliseconds(990);  // wraps on the way
   options.packets = 300;
   const auto stream = test::make_stream(options);
   const velodyne::ModelTable& table = *velodyne::find_model(GetParam().model);
@@ -94,8 +93,7 @@ TEST(VelodyneEncoder, RefusesUnknownModelsAndImpossibleRates) {
 
 TEST(VelodyneEncoder, RangesThatTheFormatCannotHoldBecomeNoReturn) {
   auto encoder = sim::VelodyneEncoder::create("velodyne_vlp16", {});
-  std::vector<sim::VelodyneReturn> returns(encoder->firings_per_packet(),
-                                           {131.08, 7});  // 65,540 units of 2 mm
+  std::vector<sim::LaserReturn> returns(encoder->firings_per_packet(), {131.08, 7});  // 65,540 units of 2 mm
   returns[5] = {131.07, 9};
   const auto bytes = encoder->encode(0, returns);
   const velodyne::VelodyneDecoder decoder(*velodyne::find_model("velodyne_vlp16"), {});

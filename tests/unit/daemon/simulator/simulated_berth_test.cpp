@@ -78,15 +78,14 @@ HullShare share_on_hull(const SimulatedBerth& berth, Nanoseconds delay) {
   const TriangleMesh hull = berth.hull_mesh_H();
   const Box region = *berth.hull_config().region;
   const auto boxes = berth.lidar_config().exclude;
-  std::vector<sim::VelodyneFiring> firings;
+  std::vector<sim::LaserFiring> firings;
   HullShare share;
   for (std::uint64_t packet = berth.packets() - 150; packet < berth.packets(); packet += 3) {
     const auto returns = berth.returns(packet);
     berth.encoder().firings(packet, firings);
     for (std::size_t i = packet % 5; i < returns.size(); i += 5) {
       if (returns[i].range <= 0.0) continue;
-      const Eigen::Vector3d p_L =
-          firings[i].direction * returns[i].range + Eigen::Vector3d(0, 0, firings[i].origin_z);
+      const Eigen::Vector3d p_L = firings[i].direction * returns[i].range + firings[i].origin;
       const Joints joints = berth.true_joints(firings[i].time);
       const Eigen::Vector3d p_W = lidar_pose(loader_machine(), joints, berth.sensor().mount) * p_L;
       const bool own = std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) {
@@ -118,7 +117,7 @@ TEST(SimulatedBerth, EveryHullReturnLiesOnTheHullAtItsOwnFiringTime) {
 TEST(SimulatedBerth, RangeNoiseHasItsStatedSpread) {
   // Against the noise-free distance of the same ray.
   const auto berth = make({.scenario = "static", .seed = 2, .frames = 3});
-  std::vector<sim::VelodyneFiring> firings;
+  std::vector<sim::LaserFiring> firings;
   double sum = 0.0;
   double squares = 0.0;
   int count = 0;
@@ -128,9 +127,9 @@ TEST(SimulatedBerth, RangeNoiseHasItsStatedSpread) {
     const auto sweep =
         berth->world().sweep(to_seconds(firings.front().time), to_seconds(firings.back().time));
     for (std::size_t i = 0; i < returns.size(); ++i) {
-      const auto hit = berth->world().cast(sweep, to_seconds(firings[i].time),
-                                           {0, 0, static_cast<float>(firings[i].origin_z)},
-                                           firings[i].direction.cast<float>(), 100.0F);
+      const auto hit =
+          berth->world().cast(sweep, to_seconds(firings[i].time), firings[i].origin.cast<float>(),
+                              firings[i].direction.cast<float>(), 100.0F);
       if (!hit || returns[i].range <= 0.0 || hit->cos_incidence < 0.7F) continue;
       const double error = returns[i].range - static_cast<double>(hit->distance);
       if (std::abs(error) > 0.1) continue;  // an edge in the beam

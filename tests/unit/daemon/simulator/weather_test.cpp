@@ -34,7 +34,7 @@ TEST(Weather, RainHasItsSharesOfFalseReturnsAndDropOutsAndItsNoise) {
   const SensorTraits& sensor = *find_sensor("velodyne_vlp16");
   const Weather rain = find_scenario("rain")->weather;
   constexpr double kSurface = 17.0;
-  const sim::VelodyneReturn hit{kSurface, 30};
+  const sim::LaserReturn hit{kSurface, 30};
   RandomStream random(1, 2);
   constexpr int kBeams = 40000;
   int nothing = 0;
@@ -72,7 +72,7 @@ TEST(Weather, FogLosesASquareOfTheRangeAndEverythingBeyondItsVisibility) {
     RandomStream random(3, 4);
     constexpr int kBeams = 20000;
     int lost = 0;
-    const sim::VelodyneReturn hit{range, 30};
+    const sim::LaserReturn hit{range, 30};
     for (int i = 0; i < kBeams; ++i)
       lost += through_weather(fog, sensor, {hit, hit}, random).strongest().range == 0.0 ? 1 : 0;
     const double share = std::min(1.0, range * range / 900.0);
@@ -81,7 +81,7 @@ TEST(Weather, FogLosesASquareOfTheRangeAndEverythingBeyondItsVisibility) {
 }
 
 TEST(Weather, BehindADropTheLastEchoIsTheSurfaceInEverySecondBeam) {
-  const sim::VelodyneReturn hit{17.0, 30};
+  const sim::LaserReturn hit{17.0, 30};
   RandomStream random(5, 6);
   constexpr int kBeams = 10000;
   int surface = 0;
@@ -97,7 +97,7 @@ TEST(Weather, BehindADropTheLastEchoIsTheSurfaceInEverySecondBeam) {
 
 TEST(Weather, ABlockedHalfOfTheWindowIsEmptyAndTheOtherHalfIsAsBefore) {
   const auto blocked = make({.scenario = "blocked-window", .seed = 9});
-  std::vector<sim::VelodyneFiring> firings;
+  std::vector<sim::LaserFiring> firings;
   int open = 0;
   int seen = 0;
   for (std::uint64_t packet = 0; packet < blocked->packets(); packet += 97) {

@@ -1,0 +1,36 @@
+// What is known of a LiDAR model before the first datagram: a row of the model registry.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+#include "core/base/result.hpp"
+#include "lidar_drivers/decoder.hpp"
+#include "lidar_drivers/lidar_config.hpp"
+
+namespace hulltrack {
+
+struct LidarModel {
+  std::string_view name;  // as in the configuration
+  std::string_view vendor;
+  std::string_view title;  // the maker's own name
+  std::uint16_t port;      // UDP port from the factory
+  double range;            // m, the maker's statement
+  int channels;
+
+  enum class Calibration : std::uint8_t { none, optional, required } calibration = Calibration::none;
+  std::string_view calibration_file = {};  // what it is, for tables and messages; empty with none
+  std::uint16_t information_port = 0;  // where the sensor tells about itself, from the factory; 0 = it does not
+  bool rotates = true;                 // false: no turns to cut frames at
+  TimeSource time_source = TimeSource::receive;  // what a site should set
+
+  /// An error says what is wrong with the calibration file. An empty path: none is given.
+  using Make = std::function<Result<std::unique_ptr<Decoder>>(const DecoderOptions&,
+                                                              const std::filesystem::path& calibration)>;
+  Make make_decoder;  // through make_lidar_decoder()
+};
+
+}  // namespace hulltrack
