@@ -39,7 +39,8 @@ struct DecodedPacket {
   std::vector<LidarPoint> points;  // in wire order; no point without a return; dt_ns <= 0
   Nanoseconds duration{};          // from the first to the last firing
   Nanoseconds interval{};          // from this first firing to the next datagram's, when none is lost
-  Nanoseconds sensor_time{};       // the sensor's own clock at the last firing, modulo Decoder::clock_wrap()
+  Nanoseconds sensor_time{};       // the sensor's own clock at the last firing, [0, 2^62) ns, modulo
+                                   // Decoder::clock_wrap(); without wrap since 1970
   std::optional<Nanoseconds>
       zero_crossing;  // when the rotor passed zero azimuth, if it did: as dt of a point
   // Of a sensor that does not rotate these are 0.
@@ -68,6 +69,8 @@ struct DecodeOutcome {
   std::uint32_t expected = 0;
   std::uint32_t seen = 0;
   [[nodiscard]] bool ok() const { return status == DecodeStatus::ok; }
+  /// Not this model's; what is held back is, but comes too early.
+  [[nodiscard]] bool refused() const { return !ok() && status != DecodeStatus::awaiting_angles; }
 };
 
 class Decoder {

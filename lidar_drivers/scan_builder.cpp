@@ -13,19 +13,8 @@ namespace hulltrack {
 
 namespace {
 
-/// A sensor clock further from the host's than this is not believed.
-constexpr Nanoseconds kMaxClockOffset = std::chrono::milliseconds(20);
 constexpr Nanoseconds kRateWindow = std::chrono::seconds(1);
 constexpr double kRpmSmoothing = 0.05;  // weight of the newest datagram
-
-/// Sensor time minus wall clock, both modulo the sensor's wrap (zero = none), as the smallest difference.
-Nanoseconds clock_offset(Nanoseconds sensor, WallTime host, Nanoseconds wrap) {
-  if (wrap == Nanoseconds::zero()) return sensor - host.time_since_epoch();
-  const Nanoseconds d = (sensor - host.time_since_epoch() % wrap) % wrap;
-  if (d > wrap / 2) return d - wrap;
-  if (d < -wrap / 2) return d + wrap;
-  return d;
-}
 
 }  // namespace
 
@@ -46,7 +35,10 @@ Result<ScanBuilder> ScanBuilder::create(const std::vector<LidarConfig>& lidars,
     auto decoder = make_lidar_decoder(*model, options, config.calibration);
     if (!decoder) return Error{"lidar \"" + config.name + "\": " + decoder.error().message};
     const Nanoseconds wrap = decoder.value()->clock_wrap();
-    Lidar lidar{.config = config, .decoder = std::move(decoder).value(), .sequence = PacketSequence(wrap)};
+    Lidar lidar{.config = config,
+                .decoder = std::move(decoder).value(),
+                .sequence = PacketSequence(wrap),
+                .clock = SensorClock(wrap)};
     built.push_back(std::move(lidar));
   }
   return ScanBuilder(std::move(built), framing);
@@ -58,7 +50,15 @@ ScanBuilder::ScanBuilder(std::vector<Lidar> lidars, const FramingConfig& framing
 DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
   assert(index < lidars_.size());
   Lidar& lidar = lidars_[index];
+  if (lidar.decoder->inform(datagram.bytes)) {
+    ++lidar.status.informations;
+    return {};
+  }
   const DecodeOutcome outcome = lidar.decoder->decode(datagram.bytes, packet_);
+  if (outcome.status == DecodeStatus::awaiting_angles) {
+    ++lidar.status.packets_held_back;
+    return outcome;
+  }
   if (!outcome.ok()) {
     ++lidar.status.packets_rejected;
     ++frames_.counters(index).packets_rejected;
@@ -119,11 +119,10 @@ void ScanBuilder::note_sequence(std::size_t index, const PacketSequence::Step& s
 
 MeasurementTime ScanBuilder::host_or_sensor_time(Lidar& lidar, const DecodedPacket& packet,
                                                  const Datagram& datagram) {
+  const Nanoseconds offset = lidar.clock.note(packet.sensor_time, datagram.received_utc);
   if (lidar.config.time_source == TimeSource::receive) return datagram.received;
-  LidarStatus& status = lidar.status;
-  status.clock_offset = clock_offset(packet.sensor_time, datagram.received_utc, lidar.decoder->clock_wrap());
-  status.clock_fault = std::chrono::abs(status.clock_offset) > kMaxClockOffset;
-  return status.clock_fault ? datagram.received : datagram.received + status.clock_offset;
+  lidar.status.clock_fault = !lidar.clock.believed();
+  return lidar.status.clock_fault ? datagram.received : datagram.received + offset;
 }
 
 std::optional<MeasurementTime> ScanBuilder::zero_crossing(const Lidar& lidar, MeasurementTime last) const {
@@ -174,6 +173,9 @@ LidarStatus ScanBuilder::status(std::size_t index) const {
   assert(index < lidars_.size());
   const Lidar& lidar = lidars_[index];
   LidarStatus status = lidar.status;
+  status.clock_offset = lidar.clock.offset();
+  status.clock_drift = lidar.clock.drift();
+  status.clock_suspicion = lidar.clock.suspicion();
   if (status.packets_rejected > 0) {
     status.last_rejection = lidar.decoder->explain(lidar.last_rejection) + " from " +
                             format_ipv4(lidar.rejected_ip) + ":" + std::to_string(lidar.rejected_port);

@@ -22,6 +22,7 @@
 #include "lidar_drivers/frame_assembler.hpp"
 #include "lidar_drivers/lidar_config.hpp"
 #include "lidar_drivers/packet_sequence.hpp"
+#include "lidar_drivers/sensor_clock.hpp"
 
 namespace hulltrack {
 
@@ -29,6 +30,8 @@ namespace hulltrack {
 struct LidarStatus {
   std::uint64_t packets = 0;            // decoded, duplicates included
   std::uint64_t packets_rejected = 0;   // not this model's datagrams; see last_rejection
+  std::uint64_t packets_held_back = 0;  // not decodable before the sensor tells its angles
+  std::uint64_t informations = 0;       // datagrams in which the sensor told about itself
   std::uint64_t packets_lost = 0;       // missing between the sensor's time stamps
   std::uint64_t packets_duplicate = 0;  // the same bytes again: dropped
   std::uint64_t packets_out_of_order = 0;
@@ -39,12 +42,14 @@ struct LidarStatus {
   ReturnMode return_mode = ReturnMode::unknown;
   bool field_of_view_cut = false;  // the sensor leaves sectors out
   double rpm = 0.0;
-  double packets_per_second = 0.0;  // over the last whole second of this LiDAR's stamps
-  double loss = 0.0;                // 0..1, over the same second
-  MeasurementTime last_received{};  // of a decoded datagram; meaningless while packets == 0
-  bool clock_fault = false;         // time_source sensor: sensor and host disagree, host time is used
-  Nanoseconds clock_offset{};       // sensor minus host time modulo the sensor's wrap, time_source sensor
-  std::string last_rejection;       // expected, seen and sender; empty while packets_rejected == 0
+  double packets_per_second = 0.0;    // over the last whole second of this LiDAR's stamps
+  double loss = 0.0;                  // 0..1, over the same second
+  MeasurementTime last_received{};    // of a decoded datagram; meaningless while packets == 0
+  bool clock_fault = false;           // time_source sensor: sensor and host disagree, host time is used
+  Nanoseconds clock_offset{};         // sensor minus host time modulo the sensor's wrap
+  std::optional<double> clock_drift;  // s/s, see SensorClock
+  std::string clock_suspicion;        // what a clock that is off is likely to be; empty while it is not
+  std::string last_rejection;         // expected, seen and sender; empty while packets_rejected == 0
 };
 
 class ScanBuilder {
@@ -57,7 +62,8 @@ class ScanBuilder {
   ScanBuilder(ScanBuilder&&) noexcept = default;
   ScanBuilder& operator=(ScanBuilder&&) noexcept = default;
 
-  /// Decodes one datagram of LiDAR `lidar` (index of the configuration's list) and sorts its points in.
+  /// Decodes one datagram of LiDAR `lidar` (index of the configuration's list) and sorts its points in, or
+  /// takes in what it tells about the sensor.
   DecodeOutcome add(std::size_t lidar, const Datagram& datagram);
 
   /// Finishes frames that ended more than 20 ms before `now` although nothing more arrived. `now` is on the
@@ -88,6 +94,7 @@ class ScanBuilder {
     LidarConfig config;
     std::unique_ptr<Decoder> decoder;
     PacketSequence sequence;
+    SensorClock clock;
     LidarStatus status{};
     DecodeOutcome last_rejection{};
     std::uint32_t rejected_ip = 0;

@@ -13,6 +13,8 @@ namespace {
 constexpr double kWorthyLoss = 0.005;
 /// A motor holds its speed within a few rpm; beyond this share it was set to something else.
 constexpr double kRateTolerance = 0.05;
+/// A sensor tells its lasers' angles about once a second.
+constexpr std::chrono::seconds kLongestUntold{3};
 
 }  // namespace
 
@@ -24,6 +26,7 @@ LidarWatch::LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& 
       silence_log_(log, LogLevel::error),
       foreign_log_(log),
       rejected_log_(log),
+      held_back_log_(log),
       overflow_log_(log),
       loss_log_(log),
       rate_log_(log),
@@ -86,6 +89,20 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
             static_cast<unsigned long long>(evidence.status.packets_rejected));
       },
       "no more malformed datagrams");
+  const bool held_back = held_back_grows_.update(evidence.status.packets_held_back, now);
+  tell(
+      held_back_log_, held_back && now - start_ > kLongestUntold, now,
+      [&] {
+        const std::string port = config_.information_port == 0
+                                     ? "`information_port` is 0"
+                                     : format_text(
+                                           "it sends them once a second to UDP port %u "
+                                           "(`information_port`): let that port through",
+                                           config_.information_port);
+        return "its data are held back, since it has not told its lasers' angles; " + port +
+               ", or give `calibration`";
+      },
+      "it has told its lasers' angles");
   tell(
       overflow_log_, overflow_grows_.update(evidence.kernel_overflows, now), now,
       [&] {
@@ -134,9 +151,8 @@ void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
       clock_log_, status.clock_fault, now,
       [&] {
         return format_text(
-            "its clock is off by %.3f s; the time of reception is used instead. Check its time "
-            "synchronisation",
-            to_seconds(status.clock_offset));
+            "its clock is %s; the time of reception is used instead. Check its time synchronisation",
+            status.clock_suspicion.c_str());
       },
       "its clock agrees again");
 }

@@ -47,9 +47,9 @@ class LidarWatch {
   double expected_rpm_;
   SteadyTime start_;
   bool silent_ = false;
-  RecentGrowth foreign_grows_, rejected_grows_, overflow_grows_, mode_changes_;
-  ConditionLog silence_log_, foreign_log_, rejected_log_, overflow_log_, loss_log_, rate_log_, mode_log_,
-      sector_log_, clock_log_;
+  RecentGrowth foreign_grows_, rejected_grows_, held_back_grows_, overflow_grows_, mode_changes_;
+  ConditionLog silence_log_, foreign_log_, rejected_log_, held_back_log_, overflow_log_, loss_log_, rate_log_,
+      mode_log_, sector_log_, clock_log_;
 };
 
 }  // namespace hulltrack

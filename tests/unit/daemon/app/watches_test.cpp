@@ -72,17 +72,28 @@ TEST_F(LidarWatchTest, NamesWhatWasExpectedAndSeenFromAnotherModel) {
   EXPECT_THAT(log.last(), HasSubstr("not those of a velodyne_vlp16: product 0x28 (VLP-32C) instead of 0x22"));
 }
 
+TEST_F(LidarWatchTest, TellsThatDataAreHeldBackOnceTheSensorShouldHaveToldItsAngles) {
+  evidence.status.packets_held_back = 100;
+  (void)look(milliseconds(100));
+  for (const auto& line : log.lines) EXPECT_THAT(line.text, Not(HasSubstr("held back")));
+  evidence.status.packets_held_back = 1000;
+  (void)look(milliseconds(3100));
+  EXPECT_THAT(log.last(), HasSubstr("its data are held back"));
+  EXPECT_THAT(log.last(), HasSubstr("`information_port`"));
+}
+
 TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
   packet(seconds(1));
   evidence.status.loss = 0.07;
   evidence.status.rpm = 300.0;
   evidence.status.clock_fault = true;
-  evidence.status.clock_offset = seconds(37);
+  evidence.status.clock_suspicion = "37 s ahead: it runs on TAI";
   EXPECT_EQ(look(seconds(1)), fault::clock);
   ASSERT_EQ(log.lines.size(), 3U);
   EXPECT_THAT(log.lines[0].text, HasSubstr("7.0 % of its packets"));
   EXPECT_THAT(log.lines[1].text, HasSubstr("300 rpm where frame_rate_hz asks for 600"));
-  EXPECT_THAT(log.lines[2].text, HasSubstr("off by 37.000 s"));
+  EXPECT_THAT(log.lines[2].text,
+              HasSubstr("its clock is 37 s ahead: it runs on TAI; the time of reception is used"));
 }
 
 TEST_F(LidarWatchTest, TellsOfAChangedReturnModeAndOfSectorsLeftOutOnce) {

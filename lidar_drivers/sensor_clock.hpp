@@ -1,0 +1,55 @@
+// Can a LiDAR's own clock be believed? How far it is off this host's, how fast it drifts away, and what a
+// clock that is off by so much is likely to run on.
+//
+// A datagram is stamped some tenths of a millisecond after its last firing, later where host or network are
+// busy, never earlier. So of many datagrams the largest difference "sensor minus host" is nearest to the
+// truth: one is kept a second, and the drift is the slope of a minute of them.
+// Offsets are taken modulo the sensor's wrap. Thread rule: one owner. Cost: a few ns a datagram.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "core/base/time.hpp"
+
+namespace hulltrack {
+
+class SensorClock {
+ public:
+  /// A clock farther off is not believed: at 0.3 m/s of a boom's tip it would shift points by 6 mm.
+  static constexpr Nanoseconds kTolerance = std::chrono::milliseconds(20);
+
+  /// `wrap` as Decoder::clock_wrap(): zero = it never starts again.
+  explicit SensorClock(Nanoseconds wrap) : wrap_(wrap) {}
+
+  /// Of one datagram: `sensor` its clock at the last firing, [0, 2^62) ns, `host` when it was received. Gives
+  /// sensor minus host.
+  Nanoseconds note(Nanoseconds sensor, WallTime host);
+
+  /// Sensor minus host, the best of the last second; zero before the first datagram.
+  [[nodiscard]] Nanoseconds offset() const { return best_ ? *best_ : Nanoseconds{0}; }
+  [[nodiscard]] bool believed() const { return std::chrono::abs(offset()) <= kTolerance; }
+  /// Seconds that the sensor's clock gains in a second; nothing until ten seconds have been seen.
+  [[nodiscard]] std::optional<double> drift() const;
+  /// What the clock is likely to be, in words for the log; empty while it is believed.
+  [[nodiscard]] std::string suspicion() const;
+
+ private:
+  static constexpr std::size_t kSeconds = 60;
+  struct Second {
+    WallTime time;
+    Nanoseconds offset;
+  };
+
+  Nanoseconds wrap_;
+  Nanoseconds newest_sensor_{};
+  WallTime second_began_{};
+  std::optional<Nanoseconds> best_;    // of the second before, until this one has a datagram more
+  std::optional<Nanoseconds> so_far_;  // of this second
+  std::array<Second, kSeconds> seconds_{};
+  std::size_t count_ = 0;  // ever written since the clock jumped last
+};
+
+}  // namespace hulltrack
