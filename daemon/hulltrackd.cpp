@@ -15,6 +15,7 @@
 #include "daemon/app/signals.hpp"
 #include "daemon/app/syslog_sink.hpp"
 #include "daemon/config/read_config.hpp"
+#include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {
 namespace {
@@ -64,7 +65,7 @@ int serve(const Options& options, Prepared prepared) {
 
 int run(const Options& options) {
   if (options.print_config) {
-    const ConfigReading reading = read_config(options.config, lidar_model_names());
+    const ConfigReading reading = read_config(options.config, lidar_models());
     if (!reading.config) {
       return refuse(reading.problems);
     }

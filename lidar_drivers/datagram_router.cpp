@@ -22,7 +22,7 @@ std::string format_ipv4(std::uint32_t ip) {
 Result<DatagramRouter> DatagramRouter::create(std::span<const LidarConfig> lidars) {
   DatagramRouter router;
   for (const LidarConfig& lidar : lidars) {
-    Rule rule{lidar.port, std::nullopt};
+    Rule rule{lidar.port, lidar.information_port, std::nullopt};
     if (!lidar.source.empty()) {
       const auto source = parse_ipv4(lidar.source);
       if (!source) return Error{"lidar \"" + lidar.name + "\", source: " + source.error().message};
@@ -36,7 +36,9 @@ Result<DatagramRouter> DatagramRouter::create(std::span<const LidarConfig> lidar
 std::optional<std::size_t> DatagramRouter::lidar_of(const Datagram& datagram) const {
   const auto find = [&](const std::optional<std::uint32_t>& source) -> std::optional<std::size_t> {
     const auto it = std::ranges::find_if(rules_, [&](const Rule& rule) {
-      return rule.port == datagram.destination_port && rule.source == source;
+      const std::uint16_t port = datagram.destination_port;
+      return (rule.port == port || (rule.information_port != 0 && rule.information_port == port)) &&
+             rule.source == source;
     });
     if (it == rules_.end()) return std::nullopt;
     return static_cast<std::size_t>(it - rules_.begin());

@@ -1,4 +1,4 @@
-// Which LiDAR sent a datagram? By destination port, then by source address.
+// Which LiDAR sent a datagram? By destination port, its data or its information, then by source address.
 //
 // The same rule live and in replay. Addresses are checked when the router is made. Thread rule: immutable.
 #pragma once
@@ -30,6 +30,7 @@ class DatagramRouter {
  private:
   struct Rule {
     std::uint16_t port;
+    std::uint16_t information_port;  // 0 = none
     std::optional<std::uint32_t> source;
   };
   std::vector<Rule> rules_;

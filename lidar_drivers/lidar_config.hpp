@@ -18,12 +18,13 @@ struct LidarConfig {
   std::string model;  // a name of the model registry
   std::string bind = "0.0.0.0";
   std::uint16_t port = 2368;
-  std::string source;             // only datagrams from this address; empty = any
-  std::string multicast;          // group to join; empty = none
-  std::string calibration;        // file, absolute after reading; empty = none
-  Pose mount = Pose::Identity();  // T_lidar: L -> boom
-  double min_range = 1.0;         // m
-  double max_range = 120.0;       // m
+  std::uint16_t information_port = 0;  // where the sensor tells about itself; 0 = it does not
+  std::string source;                  // only datagrams from this address; empty = any
+  std::string multicast;               // group to join; empty = none
+  std::string calibration;             // file, absolute after reading; empty = none
+  Pose mount = Pose::Identity();       // T_lidar: L -> boom
+  double min_range = 1.0;              // m
+  double max_range = 120.0;            // m
   Nanoseconds timeout = std::chrono::milliseconds(500);
   TimeSource time_source = TimeSource::receive;
   bool firing_correction = true;

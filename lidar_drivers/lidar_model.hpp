@@ -23,8 +23,9 @@ struct LidarModel {
 
   enum class Calibration : std::uint8_t { none, optional, required } calibration = Calibration::none;
   std::string_view calibration_file = {};  // what it is, for tables and messages; empty with none
-  std::uint16_t information_port = 0;  // where the sensor tells about itself, from the factory; 0 = it does not
-  bool rotates = true;                 // false: no turns to cut frames at
+  std::uint16_t information_port =
+      0;                // where the sensor tells about itself, from the factory; 0 = it does not
+  bool rotates = true;  // false: no turns to cut frames at
   TimeSource time_source = TimeSource::receive;  // what a site should set
 
   /// An error says what is wrong with the calibration file. An empty path: none is given.

@@ -245,25 +245,34 @@ std::string UdpSource::last_foreign() const {
   return counters_.foreign == 0 ? "" : format_ipv4(foreign_ip_) + ":" + std::to_string(foreign_port_);
 }
 
-Result<std::vector<UdpSource>> open_udp_sources(std::span<const LidarConfig> lidars) {
-  std::vector<std::vector<LidarConfig>> groups;
+Result<UdpSources> open_udp_sources(std::span<const LidarConfig> lidars) {
+  std::vector<LidarConfig> listening(lidars.begin(), lidars.end());
   for (const LidarConfig& lidar : lidars) {
+    if (lidar.information_port != 0 && lidar.information_port != lidar.port) {
+      listening.push_back(lidar);
+      listening.back().port = lidar.information_port;
+    }
+  }
+  UdpSources opened;
+  std::vector<std::vector<LidarConfig>> groups;
+  for (std::size_t i = 0; i < listening.size(); ++i) {
+    const LidarConfig& lidar = listening[i];
     const auto same = std::ranges::find_if(groups, [&](const std::vector<LidarConfig>& group) {
       return group.front().bind == lidar.bind && group.front().port == lidar.port;
     });
+    if (i < lidars.size()) opened.data_of.push_back(static_cast<std::size_t>(same - groups.begin()));
     if (same == groups.end()) {
       groups.push_back({lidar});
     } else {
       same->push_back(lidar);
     }
   }
-  std::vector<UdpSource> sources;
   for (const auto& group : groups) {
     auto source = UdpSource::open(group);
     if (!source) return source.error();
-    sources.push_back(std::move(source).value());
+    opened.sources.push_back(std::move(source).value());
   }
-  return sources;
+  return opened;
 }
 
 }  // namespace hulltrack

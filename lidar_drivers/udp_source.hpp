@@ -86,7 +86,12 @@ class UdpSource {
   std::unique_ptr<Buffers> buffers_;
 };
 
-/// One source for each distinct pair of bind address and port, in the order of the configuration.
-[[nodiscard]] Result<std::vector<UdpSource>> open_udp_sources(std::span<const LidarConfig> lidars);
+struct UdpSources {
+  std::vector<UdpSource> sources;    // one for each distinct pair of bind address and port
+  std::vector<std::size_t> data_of;  // LiDAR -> index of the source of its data
+};
+
+/// All that the LiDARs of a configuration send, data and information.
+[[nodiscard]] Result<UdpSources> open_udp_sources(std::span<const LidarConfig> lidars);
 
 }  // namespace hulltrack

@@ -24,7 +24,7 @@ std::string calibration_problem(const LidarConfig& lidar) {
 
 /// Goes on where the configuration has problems, so that a person hears of all of them at once.
 Preparation prepare_or_throw(const std::filesystem::path& config_file) {
-  ConfigReading reading = read_config(config_file, lidar_model_names());
+  ConfigReading reading = read_config(config_file, lidar_models());
   Preparation preparation{std::nullopt, std::move(reading.problems)};
   const Config& config = reading.readable;
   const auto complain = [&](const std::string& key, const std::string& message) {
@@ -58,14 +58,6 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
 }
 
 }  // namespace
-
-std::vector<std::string> lidar_model_names() {
-  std::vector<std::string> names;
-  for (const LidarModel& model : lidar_models()) {
-    names.emplace_back(model.name);
-  }
-  return names;
-}
 
 Preparation prepare(const std::filesystem::path& config_file) {
   try {

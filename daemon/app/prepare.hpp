@@ -29,9 +29,6 @@ struct Preparation {
   std::vector<Problem> problems;     // of the configuration, the calibrations and the map
 };
 
-/// Every model of the registry, as read_config wants them.
-[[nodiscard]] std::vector<std::string> lidar_model_names();
-
 [[nodiscard]] Preparation prepare(const std::filesystem::path& config_file);
 
 }  // namespace hulltrack

@@ -28,24 +28,6 @@ T value_or_throw(Result<T> result) {
   return std::move(result).value();
 }
 
-/// The socket that each LiDAR reads from: LiDARs of the same address and port share one.
-std::vector<std::size_t> sockets_of(const std::vector<LidarConfig>& lidars) {
-  std::vector<std::size_t> socket_of;
-  std::vector<const LidarConfig*> first;
-  for (const LidarConfig& lidar : lidars) {
-    std::size_t socket = 0;
-    while (socket < first.size() &&
-           (first[socket]->bind != lidar.bind || first[socket]->port != lidar.port)) {
-      ++socket;
-    }
-    if (socket == first.size()) {
-      first.push_back(&lidar);
-    }
-    socket_of.push_back(socket);
-  }
-  return socket_of;
-}
-
 }  // namespace
 
 RxThread::RxThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log)
@@ -54,8 +36,7 @@ RxThread::RxThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSi
       log_(log),
       lidars_(config.lidars),
       sockets_(value_or_throw(open_udp_sources(config.lidars))),
-      memories_(sockets_.size()),
-      socket_of_(sockets_of(config.lidars)),
+      memories_(sockets_.sources.size()),
       router_(value_or_throw(DatagramRouter::create(config.lidars))),
       builder_(value_or_throw(ScanBuilder::create(config.lidars, config.framing))),
       dropped_log_(log),
@@ -63,12 +44,12 @@ RxThread::RxThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSi
   if (epoll_ < 0) {
     throw std::system_error(errno, std::generic_category(), "cannot create an epoll instance");
   }
-  for (std::size_t socket = 0; socket < sockets_.size(); ++socket) {
+  for (std::size_t socket = 0; socket < sockets_.sources.size(); ++socket) {
     epoll_event event{};
     event.events = EPOLLIN;
     event.data.u64 = socket;
-    epoll_ctl(epoll_, EPOLL_CTL_ADD, sockets_[socket].fd(), &event);
-    for (const std::string& warning : sockets_[socket].warnings()) {
+    epoll_ctl(epoll_, EPOLL_CTL_ADD, sockets_.sources[socket].fd(), &event);
+    for (const std::string& warning : sockets_.sources[socket].warnings()) {
       log.write(LogLevel::warning, warning);
     }
   }
@@ -107,10 +88,10 @@ SteadyTime RxThread::receive_waiting() {
 
 void RxThread::receive(std::size_t socket) {
   for (int batch = 0; batch < kBatchesInARow; ++batch) {
-    const std::span<const Datagram> datagrams = value_or_throw(sockets_[socket].receive());
+    const std::span<const Datagram> datagrams = value_or_throw(sockets_.sources[socket].receive());
     for (const Datagram& datagram : datagrams) {
       if (const auto lidar = router_.lidar_of(datagram)) {
-        if (!builder_.add(*lidar, datagram).ok()) {
+        if (builder_.add(*lidar, datagram).refused()) {
           exchange_.events.raise(fault::foreign_packets);
         }
         last_received_ = live_steady_time(datagram.received);
@@ -125,7 +106,7 @@ void RxThread::receive(std::size_t socket) {
 }
 
 void RxThread::tell_of_counters(std::size_t socket) {
-  const UdpCounters& counters = sockets_[socket].counters();
+  const UdpCounters& counters = sockets_.sources[socket].counters();
   SocketMemory& memory = memories_[socket];
   if (counters.foreign > memory.foreign) {
     exchange_.events.raise(fault::foreign_packets);
@@ -166,7 +147,7 @@ void RxThread::look_at_lidars(SteadyTime now) {
 }
 
 LidarEvidence RxThread::evidence(std::size_t lidar) const {
-  const UdpSource& socket = sockets_[socket_of_[lidar]];
+  const UdpSource& socket = sockets_.sources[sockets_.data_of[lidar]];
   return {builder_.status(lidar), socket.counters().foreign, socket.last_foreign(),
           socket.counters().kernel_overflows};
 }
@@ -179,7 +160,7 @@ void RxThread::add_figures() {
     total.packets_lost += status.packets_lost;
     total.packets_refused += status.packets_rejected;
   }
-  for (const UdpSource& socket : sockets_) {
+  for (const UdpSource& socket : sockets_.sources) {
     total.packets_refused += socket.counters().foreign;
   }
   total.frames_dropped = dropped_;

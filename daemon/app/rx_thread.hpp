@@ -48,9 +48,8 @@ class RxThread {
   Pulse& pulse_;
   LogSink& log_;
   std::vector<LidarConfig> lidars_;
-  std::vector<UdpSource> sockets_;
+  UdpSources sockets_;
   std::vector<SocketMemory> memories_;
-  std::vector<std::size_t> socket_of_;  // LiDAR -> socket
   DatagramRouter router_;
   ScanBuilder builder_;
   std::vector<LidarWatch> watches_;

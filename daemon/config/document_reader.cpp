@@ -121,7 +121,7 @@ std::string described(const toml::node& node) {
 
 class Reader {
  public:
-  Reader(std::string file, int last_line, const std::vector<std::string>& models, Document& out)
+  Reader(std::string file, int last_line, std::span<const LidarModel> models, Document& out)
       : file_(std::move(file)), last_line_(last_line), models_(models), out_(out) {}
 
   void read(const toml::table& root) {
@@ -181,6 +181,17 @@ class Reader {
     report(line, name, message);
   }
 
+  /// Of a [[lidar]] section of this model.
+  [[nodiscard]] LidarConfig defaults_of(const std::string& model_name) const {
+    LidarConfig lidar;
+    const auto model = std::ranges::find(models_, model_name, &LidarModel::name);
+    if (model != models_.end()) {
+      lidar.port = model->port;
+      lidar.information_port = model->information_port;
+    }
+    return lidar;
+  }
+
   void read_lidars(const toml::node& node, int line) {
     const toml::array* list = node.as_array();
     const bool tables =
@@ -194,7 +205,7 @@ class Reader {
                  " [[lidar]] sections");
     } else {
       for (std::size_t i = 0; i < list->size(); ++i) {
-        LidarConfig lidar;
+        LidarConfig lidar = defaults_of((*list->get(i)->as_table())["model"].value_or(std::string()));
         lidar.place = file_ + ':' + std::to_string(line_of(list->get(i)->source()));
         auto sections = lidar_sections(lidar, models_);
         read_table(*list->get(i)->as_table(), kLidarSection, joined(kLidarSection, std::to_string(i)),
@@ -283,15 +294,14 @@ class Reader {
 
   std::string file_;
   int last_line_;
-  const std::vector<std::string>& models_;
+  std::span<const LidarModel> models_;
   Document& out_;
   std::set<std::string> visited_;  // places of tables that were there
 };
 
 }  // namespace
 
-Document read_document(std::string_view text, const std::string& file,
-                       const std::vector<std::string>& models) {
+Document read_document(std::string_view text, const std::string& file, std::span<const LidarModel> models) {
   Document document;
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {

@@ -6,12 +6,14 @@
 
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "daemon/config/config.hpp"
 #include "daemon/config/problem.hpp"
+#include "lidar_drivers/lidar_model.hpp"
 
 namespace hulltrack {
 
@@ -23,6 +25,6 @@ struct Document {
 };
 
 [[nodiscard]] Document read_document(std::string_view text, const std::string& file,
-                                     const std::vector<std::string>& models);
+                                     std::span<const LidarModel> models);
 
 }  // namespace hulltrack

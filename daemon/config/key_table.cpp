@@ -173,20 +173,24 @@ std::vector<Section> config_sections(Config& config) {
             choice("level", config.log.level, kLogLevelWords)}}};
 }
 
-std::vector<Section> lidar_sections(LidarConfig& lidar, const std::vector<std::string>& models) {
-  const auto is_model = [models](const std::string& name) {
-    return models.empty() ? !name.empty() : std::find(models.begin(), models.end(), name) != models.end();
+std::vector<Section> lidar_sections(LidarConfig& lidar, std::span<const LidarModel> models) {
+  std::vector<std::string> names;
+  for (const LidarModel& model : models) {
+    names.emplace_back(model.name);
+  }
+  const auto is_model = [names](const std::string& name) {
+    return names.empty() ? !name.empty() : std::find(names.begin(), names.end(), name) != names.end();
   };
   const std::string model_allowed =
-      models.empty() ? "a model that `hulltrack models` lists" : "one of " + list_text(models);
+      names.empty() ? "a model that `hulltrack models` lists" : "one of " + list_text(names);
   const auto address_or_none = [](const std::string& text) { return text.empty() || is_ipv4(text); };
   const auto group_or_none = [](const std::string& text) { return text.empty() || is_ipv4_multicast(text); };
   return {
       {kLidarSection,
        {text("name", lidar.name, "1 to 32 printable characters", is_label),
-        required(suggesting(text("model", lidar.model, model_allowed, is_model), models)),
+        required(suggesting(text("model", lidar.model, model_allowed, is_model), names)),
         text("bind", lidar.bind, "an IPv4 address of this computer, \"0.0.0.0\" = all of them", is_ipv4),
-        whole("port", lidar.port, 1, 65535),
+        whole("port", lidar.port, 1, 65535), whole("information_port", lidar.information_port, 0, 65535),
         text("source", lidar.source, "the LiDAR's IPv4 address, or \"\" for any", address_or_none),
         text("multicast", lidar.multicast,
              "an IPv4 address from 224.0.0.0 to 239.255.255.255, or \"\" for none", group_or_none),

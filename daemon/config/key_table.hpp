@@ -7,11 +7,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "daemon/config/config.hpp"
+#include "lidar_drivers/lidar_model.hpp"
 
 namespace hulltrack {
 
@@ -41,7 +43,7 @@ inline constexpr const char* kLidarMountSection = "lidar.mount";
 /// Every section except the LiDARs', in the order of the sample file.
 [[nodiscard]] std::vector<Section> config_sections(Config& config);
 
-/// The sections of one [[lidar]] entry. `models`: the names allowed; empty = any.
-[[nodiscard]] std::vector<Section> lidar_sections(LidarConfig& lidar, const std::vector<std::string>& models);
+/// The sections of one [[lidar]] entry. `models`: those allowed; empty = any.
+[[nodiscard]] std::vector<Section> lidar_sections(LidarConfig& lidar, std::span<const LidarModel> models);
 
 }  // namespace hulltrack

@@ -99,7 +99,7 @@ Problem ConfigReading::problem_with(const std::filesystem::path& file, const std
 }
 
 ConfigReading parse_config(std::string_view text, const std::filesystem::path& file,
-                           const std::vector<std::string>& models) {
+                           std::span<const LidarModel> models) {
   const std::string name = file.string();
   if (text.size() > kMaxFile) {
     return without_config({name, 0, "is larger than 1 MiB; is this the configuration?"});
@@ -124,7 +124,7 @@ ConfigReading parse_config(std::string_view text, const std::filesystem::path& f
   return reading;
 }
 
-ConfigReading read_config(const std::filesystem::path& file, const std::vector<std::string>& models) {
+ConfigReading read_config(const std::filesystem::path& file, std::span<const LidarModel> models) {
   const auto failed = [&](const std::string& why) {
     return without_config({file.string(), 0, "cannot be read: " + why + "; is this the right file?"});
   };

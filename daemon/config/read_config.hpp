@@ -8,12 +8,14 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "daemon/config/config.hpp"
 #include "daemon/config/problem.hpp"
+#include "lidar_drivers/lidar_model.hpp"
 
 namespace hulltrack {
 
@@ -30,14 +32,15 @@ struct ConfigReading {
                                      const std::string& message) const;
 };
 
-/// `models`: every LiDAR model name of this build; a `model` outside it is a problem.
+/// `models`: every LiDAR model of this build; a `model` outside it is a problem, and the ports' defaults are
+/// its own.
 [[nodiscard]] ConfigReading read_config(const std::filesystem::path& file,
-                                        const std::vector<std::string>& models);
+                                        std::span<const LidarModel> models);
 
 /// As read_config for text already in memory; `file` names it in messages, and relative paths in the
 /// text are relative to its folder.
 [[nodiscard]] ConfigReading parse_config(std::string_view text, const std::filesystem::path& file,
-                                         const std::vector<std::string>& models);
+                                         std::span<const LidarModel> models);
 
 /// The effective values of every key as TOML that reads back equal.
 [[nodiscard]] std::string print_config(const Config& config);

@@ -96,11 +96,15 @@ Result<void> run_live(const SimulatedBerth& berth, const LiveOptions& options, c
   Nanoseconds next_line = std::chrono::seconds(1);
   const LiveJudge nobody(berth);
   const auto show = [&](Nanoseconds time) { hooks.show(plc ? plc->line(time) : nobody.ship_line(time)); };
+  const std::vector<std::uint8_t> about_itself = berth.information().datagram;
+  InformationTimes telling;
   std::uint64_t number = 0;
   for (auto packet = packets.take(); packet; packet = packets.take(), ++number) {
     const Nanoseconds due = berth.sent(number);
     std::this_thread::sleep_until(start + due);
     latest = std::max(latest, now() - start - due);
+    if (!about_itself.empty() && telling.due(due))
+      if (auto sent = lidar->send(about_itself); !sent) return sent;
     if (auto sent = lidar->send(*packet); !sent) return sent;
     if (due < next_line) continue;
     show(next_line);

@@ -93,28 +93,41 @@ Result<void> write_text(const fs::path& file, const std::string& text) {
   return {};
 }
 
-/// The sensor as delivered: 192.168.1.201 broadcasts to port 2368.
-constexpr UdpEndpoints kFactorySettings{
-    .source_ip = 0xC0A801C9U, .source_port = 2368, .destination_ip = 0xFFFFFFFFU, .destination_port = 2368};
+/// The sensor as delivered: 192.168.1.201 broadcasts.
+constexpr UdpEndpoints broadcast_to(std::uint16_t port) {
+  return {
+      .source_ip = 0xC0A801C9U, .source_port = port, .destination_ip = 0xFFFFFFFFU, .destination_port = port};
+}
 
 Result<void> write_capture(const fs::path& file, const SimulatedBerth& berth,
                            const ProgressCallback& progress) {
   auto writer = PcapWriter::create(file);
   if (!writer) return writer.error();
+  const LidarConfig lidar = berth.lidar_config();
+  const std::vector<std::uint8_t> about_itself = berth.information().datagram;
+  InformationTimes telling;
   constexpr std::uint64_t kBatch = 1024;
   std::vector<SimulatedBerth::Packet> batch;
   for (std::uint64_t first = 0; first < berth.packets(); first += kBatch) {
     batch.resize(std::min(kBatch, berth.packets() - first));
     for_each_index(batch.size(), [&](std::size_t i) { batch[i] = berth.packet(first + i); });
-    for (std::size_t i = 0; i < batch.size(); ++i)
-      if (auto written =
-              writer->write(SimulatedBerth::kEpoch + berth.sent(first + i), kFactorySettings, batch[i]);
-          !written)
-        return written;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      const MeasurementTime time = SimulatedBerth::kEpoch + berth.sent(first + i);
+      if (!about_itself.empty() && telling.due(berth.sent(first + i)))
+        if (auto done = writer->write(time, broadcast_to(lidar.information_port), about_itself); !done)
+          return done;
+      if (auto done = writer->write(time, broadcast_to(lidar.port), batch[i]); !done) return done;
+    }
     const double share = static_cast<double>(first + batch.size()) / static_cast<double>(berth.packets());
     if (!progress(share)) return Error{"interrupted; nothing was left in the folder"};
   }
   return writer->close();
+}
+
+Result<void> write_calibration(PendingFiles& files, const SimulatedBerth& berth) {
+  const sim::SensorInformation information = berth.information();
+  if (information.calibration_name.empty()) return {};
+  return write_text(files.add(information.calibration_name), information.calibration);
 }
 
 }  // namespace
@@ -152,6 +165,7 @@ Result<void> write_recording(const SimulatedBerth& berth, const fs::path& folder
   if (auto ready = prepare_folder(folder, overwrite); !ready) return ready;
   PendingFiles files(folder);
   if (auto done = write_text(files.add("hulltrackd.toml"), site_config(berth, {})); !done) return done;
+  if (auto done = write_calibration(files, berth); !done) return done;
   if (auto done = write_table(files.add("truth.csv"), recorded_truth(berth)); !done) return done;
   if (auto done = write_table(files.add("plc.csv"), recorded_plc(berth)); !done) return done;
   if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
@@ -165,6 +179,7 @@ Result<void> write_site_files(const SimulatedBerth& berth, const fs::path& folde
   if (auto ready = prepare_folder(folder, overwrite); !ready) return ready;
   PendingFiles files(folder);
   if (auto done = write_text(files.add("hulltrackd.toml"), config_text); !done) return done;
+  if (auto done = write_calibration(files, berth); !done) return done;
   if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
   return files.commit();
 }

@@ -18,6 +18,10 @@ std::vector<SensorTraits> make_sensors() {
   return {
       {"velodyne_vlp16", bracket(), 1.0, 100.0, 50.0, 0.02, 0.0030, 0.0015},
       {"velodyne_vlp32c", bracket(), 1.0, 120.0, 90.0, 0.02, 0.0030, 0.0015},
+      {"ouster_os", bracket(), 1.0, 120.0, 45.0, 0.02, 0.0031, 0.0031},
+      {"hesai_xt32", bracket(), 1.0, 120.0, 80.0, 0.01, 0.0010, 0.0026},
+      {"robosense_helios32", bracket(), 1.0, 120.0, 110.0, 0.02, 0.0017, 0.0035},
+      {"livox_mid360", bracket(), 1.0, 70.0, 40.0, 0.02, 0.0026, 0.0026},
   };
 }
 

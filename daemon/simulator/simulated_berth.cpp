@@ -7,6 +7,7 @@
 #include "daemon/simulator/loader_machine.hpp"
 #include "daemon/simulator/ship_mesh.hpp"
 #include "daemon/simulator/survey.hpp"
+#include "lidar_drivers/model_registry.hpp"
 #include "lidar_drivers/sim/encoder_registry.hpp"
 
 namespace hulltrack {
@@ -229,6 +230,11 @@ Cloud SimulatedBerth::map() const {
 LidarConfig SimulatedBerth::lidar_config() const {
   LidarConfig config;
   config.model = sensor_->model;
+  if (const LidarModel* model = find_lidar_model(config.model)) {
+    config.port = model->port;
+    config.information_port = model->information_port;
+  }
+  config.calibration = information().calibration_name;
   config.mount = sensor_->mount;
   config.min_range = sensor_->min_range;
   config.max_range = sensor_->max_range;

@@ -35,6 +35,19 @@ struct SimulationOptions {
   ReturnMode return_mode = ReturnMode::strongest;  // strongest, last or dual
 };
 
+/// When does a sensor tell about itself: with its first datagram and once a second from then on.
+class InformationTimes {
+ public:
+  [[nodiscard]] bool due(Nanoseconds time) {
+    if (time < next_) return false;
+    next_ = time + std::chrono::seconds(1);
+    return true;
+  }
+
+ private:
+  Nanoseconds next_{0};
+};
+
 class SimulatedBerth {
  public:
   static constexpr int kMaxFrames = 36'000;  // an hour
@@ -58,6 +71,8 @@ class SimulatedBerth {
   /// What the sensor measured for each firing of the datagram, in wire order; range 0 = nothing. With dual
   /// return two a firing, as the encoder wants them.
   [[nodiscard]] std::vector<sim::LaserReturn> returns(std::uint64_t number) const;
+  /// What the sensor tells about itself, and the file that goes with it.
+  [[nodiscard]] sim::SensorInformation information() const { return encoder_->information(); }
   [[nodiscard]] const sim::LidarEncoder& encoder() const { return *encoder_; }
 
   /// Where the reference point is and how the hull lies there: of a bent hull the tangent frame at that point

@@ -13,6 +13,8 @@ Result<std::vector<Scan>> simulated_scans(const SimulatedBerth& berth, int first
   auto builder =
       ScanBuilder::create({berth.lidar_config()}, {.framing = Framing::period, .frame_rate_hz = 10.0});
   if (!builder) return builder.error();
+  if (const auto about_itself = berth.information().datagram; !about_itself.empty())
+    builder->add(0, {.bytes = about_itself, .received = SimulatedBerth::kEpoch});
   const Nanoseconds begin = first * SimulatedBerth::kFramePeriod;
   const Nanoseconds end = (first + count) * SimulatedBerth::kFramePeriod;
   // The first datagram's first firing opens the grid of frames, so it must not be before `begin`.

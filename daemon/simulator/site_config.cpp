@@ -44,7 +44,11 @@ void put_machine(std::string& text) {
 }
 
 void put_lidar(std::string& text, const LidarConfig& lidar, std::uint16_t port) {
-  put(text, "[[lidar]]\nname = \"boom\"\nmodel = \"%s\"\nport = %u\n", lidar.model.c_str(), unsigned{port});
+  put(text, "[[lidar]]\nname = \"boom\"\nmodel = \"%s\"\nport = %u\n", lidar.model.c_str(),
+      unsigned{port == 0 ? lidar.port : port});
+  if (lidar.information_port != 0)
+    put(text, "information_port = %u\n", unsigned{port == 0 ? lidar.information_port : port});
+  if (!lidar.calibration.empty()) put(text, "calibration = \"%s\"\n", lidar.calibration.c_str());
   text +=
       "# Beside the chute's head. The fan hangs down, askew to the ship, so that decks, coaming sides and\n"
       "# coaming ends are in view at every slew angle.\n";

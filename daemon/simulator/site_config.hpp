@@ -16,7 +16,7 @@ namespace hulltrack {
 struct SiteAddresses {
   std::string plc_host = "127.0.0.1";
   std::uint16_t plc_port = 1502;
-  std::uint16_t lidar_port = 2368;
+  std::uint16_t lidar_port = 0;  // of its data and of what it tells about itself; 0 = the model's own
 };
 
 [[nodiscard]] std::string site_config(const SimulatedBerth& berth, const SiteAddresses& addresses);

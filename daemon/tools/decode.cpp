@@ -30,6 +30,7 @@ struct DecodeOptions {
   std::string model;
   std::string calibration;
   std::optional<std::uint16_t> port;
+  std::optional<std::uint16_t> information_port;
   std::string source;
   std::filesystem::path out;
   bool no_firing_correction = false;
@@ -191,8 +192,9 @@ struct DecodeTally {
   std::set<std::uint32_t> senders;
 };
 
-void decode_datagram(const Decoder& decoder, const Datagram& datagram, DecodedPacket& packet, PointFile& out,
+void decode_datagram(Decoder& decoder, const Datagram& datagram, DecodedPacket& packet, PointFile& out,
                      DecodeTally& tally) {
+  if (decoder.inform(datagram.bytes)) return;
   const DecodeOutcome outcome = decoder.decode(datagram.bytes, packet);
   const std::uint64_t index = tally.packets;
   if (outcome.status != DecodeStatus::wrong_size) ++tally.packets;
@@ -209,6 +211,18 @@ void decode_datagram(const Decoder& decoder, const Datagram& datagram, DecodedPa
   tally.last = datagram.received;
   tally.senders.insert(datagram.source_ip);
   out.add(index, packet.points, datagram.received);
+}
+
+/// Takes in what the sensor tells about itself anywhere in the capture, so that the data before it can be
+/// decoded too.
+void learn_from_capture(const DecodeOptions& options, const LidarModel& model, PcapFilter filter,
+                        Decoder& decoder) {
+  filter.port = options.information_port.value_or(model.information_port);
+  auto capture = PcapSource::open(options.capture, filter);
+  if (!capture) throw ToolError(capture.error().message);
+  Datagram datagram;
+  for (auto more = capture->next(datagram); more && *more; more = capture->next(datagram))
+    if (decoder.inform(datagram.bytes)) return;
 }
 
 std::string join_addresses(const std::set<std::uint32_t>& ips) {
@@ -245,6 +259,8 @@ void decode(const DecodeOptions& options) {
                                        .repeated_echoes = true};
   const auto decoder = make_lidar_decoder(model, decoder_options, options.calibration);
   if (!decoder) throw ToolError("--calibration: " + decoder.error().message);
+  if (model.information_port != 0 && options.calibration.empty())
+    learn_from_capture(options, model, filter, **decoder);
   auto capture = PcapSource::open(options.capture, filter);
   if (!capture) throw ToolError(capture.error().message);
 
@@ -281,6 +297,8 @@ void add_decode(CLI::App& app) {
   command->add_option("--model", options->model, "LiDAR model, see `hulltrack models`")->required();
   command->add_option("--calibration", options->calibration, "Calibration file, for models that need one");
   command->add_option("--port", options->port, "UDP port the LiDAR sends to (default: the model's)");
+  command->add_option("--information-port", options->information_port,
+                      "UDP port on which the LiDAR tells its lasers' angles (default: the model's)");
   command->add_option("--source", options->source, "Only datagrams from this address (default: any)");
   command->add_option("--out", options->out, "File to write, .csv or .pcd")->required();
   command->add_flag("--no-firing-correction", options->no_firing_correction,

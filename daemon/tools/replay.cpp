@@ -85,11 +85,7 @@ Config load_config(const ReplayOptions& options) {
   if (options.config.empty() && !std::filesystem::exists(file)) {
     throw ToolError(file.string() + ": is missing; name the configuration with --config");
   }
-  std::vector<std::string> models;
-  for (const LidarModel& model : lidar_models()) {
-    models.emplace_back(model.name);
-  }
-  ConfigReading reading = read_config(file, models);
+  ConfigReading reading = read_config(file, lidar_models());
   if (!reading.config) {
     std::string text;
     for (const Problem& problem : reading.problems) {

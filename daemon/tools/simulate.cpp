@@ -128,6 +128,13 @@ Joints parse_joints(const std::string& text) {
   return {d_x, radians(slew), radians(luff)};
 }
 
+std::string simulated_models() {
+  std::string names;
+  for (const SensorTraits& sensor : simulated_sensors())
+    names += (names.empty() ? "" : ", ") + std::string(sensor.model);
+  return names;
+}
+
 Result<void> write_config(const SimulatedBerth& berth, const SimulateOptions& options,
                           std::uint16_t plc_port) {
   if (options.config_out.empty()) return {};
@@ -194,7 +201,7 @@ void add_simulate(CLI::App& app) {
       ->needs(list);
   command->add_option("--scenario", simulation.scenario, "What the ship does, see --list")
       ->capture_default_str();
-  command->add_option("--lidar", simulation.lidar_model, "velodyne_vlp16 or velodyne_vlp32c")
+  command->add_option("--lidar", simulation.lidar_model, "LiDAR model: " + simulated_models())
       ->capture_default_str();
   const std::map<std::string, ReturnMode> modes = {
       {"strongest", ReturnMode::strongest}, {"last", ReturnMode::last}, {"dual", ReturnMode::dual}};

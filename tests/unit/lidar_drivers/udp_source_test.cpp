@@ -107,8 +107,9 @@ TEST(UdpSource, LidarsOfOnePortShareASocketAndTheRouterTellsThemApart) {
   std::vector<LidarConfig> lidars{loopback("127.0.0.2"), loopback("127.0.0.3")};
   auto sources = open_udp_sources(lidars);
   ASSERT_TRUE(sources.ok());
-  ASSERT_EQ(sources->size(), 1U);
-  UdpSource& source = sources->front();
+  ASSERT_EQ(sources->sources.size(), 1U);
+  EXPECT_THAT(sources->data_of, ::testing::ElementsAre(0U, 0U));
+  UdpSource& source = sources->sources.front();
   for (LidarConfig& lidar : lidars) lidar.port = source.port();
   const auto router = DatagramRouter::create(lidars);
   ASSERT_TRUE(router.ok());

@@ -17,6 +17,7 @@ namespace hulltrack {
 namespace {
 
 const std::string kSample = HULLTRACK_SOURCE_DIR "/etc/hulltrackd.toml";
+const std::vector<LidarModel> kModels{{.name = "velodyne_vlp16", .port = 2368}};
 const std::string kManPage = HULLTRACK_SOURCE_DIR "/daemon/man/hulltrackd.toml.5";
 
 struct DocumentedKey {
@@ -48,7 +49,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(SampleFile, ReadsWithoutAProblemAndHoldsTheDefaults) {
-  const auto reading = read_config(kSample, {"velodyne_vlp16"});
+  const auto reading = read_config(kSample, kModels);
   ASSERT_TRUE(reading.config) << to_string(reading.problems.at(0));
   Config defaults;
   defaults.plc.host = reading.config->plc.host;
@@ -59,7 +60,7 @@ TEST(SampleFile, ReadsWithoutAProblemAndHoldsTheDefaults) {
 }
 
 TEST(SampleFile, HasEveryKey) {
-  const auto reading = read_config(kSample, {"velodyne_vlp16"});
+  const auto reading = read_config(kSample, kModels);
   for (const DocumentedKey& key : all_keys()) {
     const std::string lidar = kLidarSection;
     const std::string section =

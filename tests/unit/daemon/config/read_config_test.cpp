@@ -17,7 +17,9 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::vector<std::string> kModels = {"velodyne_vlp16", "velodyne_vlp32c", "ouster_os"};
+const std::vector<LidarModel> kModels = {{.name = "velodyne_vlp16", .port = 2368},
+                                         {.name = "velodyne_vlp32c", .port = 2368},
+                                         {.name = "ouster_os", .port = 7502}};
 
 constexpr const char* kLeast =
     "[plc]\nhost = \"plc.example\"\n[[lidar]]\nmodel = \"velodyne_vlp16\"\n[hull]\nmap = \"hull.pcd\"\n";
@@ -391,7 +393,7 @@ INSTANTIATE_TEST_SUITE_P(
               "is 1.0, not below max_range = 0.5"},
         Wrong{"same_name", two_lidars("port = 1\n", "port = 2\n"), ":4: lidar.name",
               "is \"boom\", the name of another LiDAR too"},
-        Wrong{"same_port", two_lidars("name = \"a\"\n", "name = \"b\"\nport = 2368\n"), ":7: lidar.port",
+        Wrong{"same_port", two_lidars("name = \"a\"\n", "name = \"b\"\nport = 7502\n"), ":7: lidar.port",
               "where LiDAR \"a\" listens too"},
         Wrong{"same_port_one_source", two_lidars("name = \"a\"\nsource = \"10.0.0.1\"\n", "name = \"b\"\n"),
               ":5: lidar.port", "a `source` to each"},
@@ -469,6 +471,18 @@ TEST(ReadConfig, AFileThatCannotBeReadIsNamed) {
   EXPECT_THAT(to_string(read_config(large, kModels).problems.at(0)), HasSubstr("larger than 1 MiB"));
   const auto good = folder.file("good.toml", kLeast);
   EXPECT_TRUE(read_config(good, kModels).config);
+}
+
+TEST(ReadConfig, PortsAreTheModelsOwnUnlessTheyAreGiven) {
+  const std::vector<LidarModel> models{{.name = "talkative", .port = 6699, .information_port = 7788}};
+  const auto lidar = [&](const std::string& keys) {
+    const std::string text = "[[lidar]]\n" + keys + "model = \"talkative\"\n" + kPlc + kHull;
+    return parse_config(text, "/site/a.toml", models).config.value().lidars.at(0);
+  };
+  EXPECT_EQ(lidar("").port, 6699);
+  EXPECT_EQ(lidar("").information_port, 7788);
+  EXPECT_EQ(lidar("port = 2000\n").port, 2000);
+  EXPECT_EQ(lidar("information_port = 0\n").information_port, 0);
 }
 
 }  // namespace

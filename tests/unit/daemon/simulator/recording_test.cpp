@@ -20,12 +20,6 @@ namespace fs = std::filesystem;
 
 const char* const kFiles[] = {"lidar.pcap", "plc.csv", "truth.csv", "hull.pcd", "hulltrackd.toml"};
 
-std::vector<std::string> model_names() {
-  std::vector<std::string> names;
-  for (const LidarModel& model : lidar_models()) names.emplace_back(model.name);
-  return names;
-}
-
 class Recording : public testing::Test {
  protected:
   static std::unique_ptr<SimulatedBerth> berth(std::uint64_t seed, int frames) {
@@ -48,7 +42,7 @@ TEST_F(Recording, SameSeedSameBytesAndItsReplayHasItsFrames) {
     EXPECT_TRUE(test::read_text(one / name) == test::read_text(two / name)) << name << " differs";
   }
 
-  const ConfigReading reading = read_config(one / "hulltrackd.toml", model_names());
+  const ConfigReading reading = read_config(one / "hulltrackd.toml", lidar_models());
   ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
   const Config& config = *reading.config;
   EXPECT_TRUE(read_map_file(config.map_file).ok());
@@ -79,7 +73,7 @@ TEST_F(Recording, ConfigurationSaysWhatTheSimulationIs) {
         std::move(SimulatedBerth::create({.lidar_model = std::string(sensor.model), .frames = 1})).value();
     const std::string text =
         site_config(*simulated, {.plc_host = "127.0.0.1", .plc_port = 1234, .lidar_port = 2999});
-    const ConfigReading reading = parse_config(text, folder_ / "hulltrackd.toml", model_names());
+    const ConfigReading reading = parse_config(text, folder_ / "hulltrackd.toml", lidar_models());
     ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
     const Config& config = *reading.config;
     EXPECT_EQ(config.plc.port, 1234);
