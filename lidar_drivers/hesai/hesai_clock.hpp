@@ -18,7 +18,7 @@ namespace hulltrack::hesai {
 [[nodiscard]] Nanoseconds read_clock(Bytes datagram, const ModelTable& model);
 
 /// The inverse, to the microsecond begun. A date before the model's first year is written as none.
-/// Precondition: since_1970 >= 0, below the year 2155.
+/// Precondition: a date in the years 1900 to 2155.
 void write_clock(std::span<std::uint8_t> datagram, const ModelTable& model, Nanoseconds since_1970);
 
 }  // namespace hulltrack::hesai

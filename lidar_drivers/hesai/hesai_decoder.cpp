@@ -12,7 +12,6 @@ namespace hulltrack::hesai {
 
 namespace {
 
-constexpr double kFixedDistanceUnit = 0.004;  // m, where no header states it
 constexpr PacketCounter kCounterWrap{0, std::uint64_t{1} << 32};
 
 ReturnMode return_mode_of(std::uint8_t code) {
@@ -128,7 +127,8 @@ std::size_t HesaiDecoder::returns(Bytes payload) const {
 }
 
 double HesaiDecoder::distance_unit(Bytes payload) const {
-  return model_.header.bytes == 0 ? kFixedDistanceUnit : payload[model_.header.distance_unit] * 0.001;
+  const bool stated = model_.header.bytes != 0;
+  return (stated ? payload[model_.header.distance_unit] : model_.distance_unit_mm) * 0.001;
 }
 
 std::optional<PacketCounter> HesaiDecoder::counter(Bytes payload) const {

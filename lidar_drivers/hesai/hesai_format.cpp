@@ -112,17 +112,17 @@ constexpr Nanoseconds kXtBlockTime{5'632};
 constexpr Nanoseconds kPandarPeriod{55'560};
 
 constexpr std::array<ModelTable, 6> kModels = {{
-    {"hesai_xt16", "PandarXT-16", 120.0, 16, 8, 4, 2, 6, kHeader, kXtTail, 1900, kXtPeriod, kXtBlockTime,
+    {"hesai_xt16", "PandarXT-16", 120.0, 16, 8, 4, 2, 6, 4, kHeader, kXtTail, 1900, kXtPeriod, kXtBlockTime,
      false, fan<16>(15.0, 2.0), row<16>(Nanoseconds(3'024))},
-    {"hesai_xt32", "PandarXT-32", 120.0, 32, 8, 4, 2, 6, kHeader, kXtTail, 1900, kXtPeriod, kXtBlockTime,
+    {"hesai_xt32", "PandarXT-32", 120.0, 32, 8, 4, 2, 6, 4, kHeader, kXtTail, 1900, kXtPeriod, kXtBlockTime,
      false, fan<32>(15.0, 1.0), row<32>(Nanoseconds(1'512))},
-    {"hesai_xt32m", "XT32M2X", 300.0, 32, 6, 4, 3, 6, kHeader, kXtTail, 1900, kXtPeriod, kXtBlockTime, false,
-     fan<32>(19.5, 1.3), row<16>(Nanoseconds(2'888))},
-    {"hesai_pandar40p", "Pandar40P", 200.0, 40, 10, 3, 2, 0, kNoHeader, kPandarTail, 2000, kPandarPeriod,
+    {"hesai_xt32m", "XT32M2X", 300.0, 32, 6, 4, 3, 6, 5, kHeader, kXtTail, 1900, kXtPeriod, kXtBlockTime,
+     false, fan<32>(19.5, 1.3), row<16>(Nanoseconds(2'888))},
+    {"hesai_pandar40p", "Pandar40P", 200.0, 40, 10, 3, 2, 0, 4, kNoHeader, kPandarTail, 2000, kPandarPeriod,
      Nanoseconds(-28'580), false, table(kPandar40pElevation, kPandar40pAzimuth), times(kPandar40pLead, -1)},
-    {"hesai_pandar64", "Pandar64", 200.0, 64, 6, 3, 2, 0, kShortHeader, kPandarTail, 2000, kPandarPeriod,
+    {"hesai_pandar64", "Pandar64", 200.0, 64, 6, 3, 2, 0, 4, kShortHeader, kPandarTail, 2000, kPandarPeriod,
      Nanoseconds(-42'580), false, table(kPandar64Elevation, kPandar64Azimuth), times(kPandar64Lead, -1)},
-    {"hesai_qt64", "PandarQT", 60.0, 64, 4, 4, 2, 3, kHeader, kQtTail, 1900, Nanoseconds(166'667),
+    {"hesai_qt64", "PandarQT", 60.0, 64, 4, 4, 2, 3, 4, kHeader, kQtTail, 1900, Nanoseconds(166'667),
      Nanoseconds(25'710), true, table(kQt64Elevation, kQt64Azimuth), times(kQt64Delay, 1)},
 }};
 

@@ -28,7 +28,6 @@ inline constexpr std::size_t kSequenceBytes = 4;
 inline constexpr std::size_t kSignatureBytes = 32;
 inline constexpr std::uint8_t kSequenceBit = 0x01;   // of the header's flags
 inline constexpr std::uint8_t kSignatureBit = 0x08;  // of the header's flags
-inline constexpr std::uint8_t kFactoryByte = 0x42;
 
 inline constexpr std::uint8_t kModeFirst = 0x33;
 inline constexpr std::uint8_t kModeStrongest = 0x37;
@@ -67,8 +66,9 @@ struct ModelTable {
   std::size_t lasers;
   std::size_t blocks;
   std::size_t return_bytes;
-  std::size_t max_returns;  // a firing
-  std::uint8_t protocol;    // major version in the header; 0 = it has none
+  std::size_t max_returns;        // a firing
+  std::uint8_t protocol;          // major version in the header; 0 = it has none
+  std::uint8_t distance_unit_mm;  // as delivered; where there is a header, that counts
   HeaderLayout header;
   TailLayout tail;
   int year_base;  // to which the date's first byte is added
