@@ -64,7 +64,8 @@ class LidarEncoder {
     return first_firing(packet) + packet_duration();
   }
 
-  /// Replaces `out` by the packet's firings in wire order, which is also order of time.
+  /// Replaces `out` by the packet's firings in wire order; the front one is the earliest, the back one the
+  /// latest.
   virtual void firings(std::uint64_t packet, std::vector<LaserFiring>& out) const = 0;
 
   /// `returns` belongs to firings(packet) one to one; with dual return two a firing: [2i] the last

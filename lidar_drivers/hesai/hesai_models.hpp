@@ -1,0 +1,12 @@
+// Hesai's rows of the model registry.
+#pragma once
+
+#include <vector>
+
+#include "lidar_drivers/lidar_model.hpp"
+
+namespace hulltrack::hesai {
+
+[[nodiscard]] std::vector<LidarModel> lidar_models();
+
+}  // namespace hulltrack::hesai
