@@ -50,14 +50,16 @@ Nanoseconds read_clock(Bytes payload, Family family) {
          std::chrono::milliseconds(read_be16(c, 6)) + std::chrono::microseconds(read_be16(c, 8));
 }
 
-std::string models_with(std::size_t lasers, Family family) {
-  std::string names;
+std::string unit_of(std::size_t lasers, bool to_zenith) {
+  return "a unit of " + std::to_string(lasers) + " lasers" + (to_zenith ? " up to the zenith" : "");
+}
+
+/// The model that a unit is, to be asked for; empty when there is none of the family.
+std::string question(const Difop& unit, Family family) {
   for (const ModelTable& model : models()) {
-    if (model.lasers != lasers || model.family != family) continue;
-    if (!names.empty()) names += " or ";
-    names += model.name;
+    if (fits(unit, model) && model.family == family) return ": model = " + std::string(model.name) + "?";
   }
-  return names;
+  return {};
 }
 
 }  // namespace
@@ -131,7 +133,7 @@ DecodeOutcome RobosenseDecoder::check(std::span<const std::uint8_t> payload) con
     if (flag != kBlockFlag) return {DecodeStatus::bad_flag, kBlockFlag, flag};
   }
   if (!unit_) return {DecodeStatus::awaiting_angles, 0, 0};
-  if (unit_->lasers != model_.lasers) {
+  if (!fits(*unit_, model_)) {
     return {DecodeStatus::wrong_product, static_cast<std::uint32_t>(model_.lasers),
             static_cast<std::uint32_t>(unit_->lasers)};
   }
@@ -193,9 +195,9 @@ std::string RobosenseDecoder::explain(const DecodeOutcome& outcome) const {
                     outcome.seen);
       return text;
     case DecodeStatus::wrong_product:
-      return "expected a unit of " + std::to_string(outcome.expected) + " lasers; this is a unit of " +
-             std::to_string(outcome.seen) + " lasers: model = " + models_with(outcome.seen, model_.family) +
-             "?";
+      if (!unit_) break;
+      return "expected " + unit_of(model_.lasers, model_.to_zenith) + "; this is " +
+             unit_of(unit_->lasers, unit_->to_zenith) + question(*unit_, model_.family);
     case DecodeStatus::wrong_return_mode:
       if (outcome.expected == 0) {
         std::snprintf(text, sizeof text, "expected a return mode that the model has, saw 0x%02X",

@@ -26,8 +26,7 @@ class RobosenseDecoder final : public Decoder {
 
   [[nodiscard]] DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                      DecodedPacket& out) const override;
-  /// A unit with another number of lasers than the model's is taken in too: its data are refused from then
-  /// on.
+  /// A unit of another model is taken in too, as far as can be told: its data are refused from then on.
   bool inform(std::span<const std::uint8_t> payload) override;
   [[nodiscard]] std::string explain(const DecodeOutcome& outcome) const override;
   [[nodiscard]] Nanoseconds clock_wrap() const override { return Nanoseconds::zero(); }

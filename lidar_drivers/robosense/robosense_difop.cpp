@@ -9,7 +9,8 @@ namespace hulltrack::robosense {
 
 namespace {
 
-constexpr int kMaxAngle = 9000;  // 0.01 deg
+constexpr int kMaxAngle = 9000;        // 0.01 deg
+constexpr double kZenithModel = 50.0;  // deg, about half way between 15 and 90
 
 using Angles = std::array<LaserAngles, kSlots>;
 
@@ -95,11 +96,17 @@ Result<Difop> read_difop(Bytes payload, const ModelTable& model) {
         "is a DIFOP packet without the angles of 16 or 32 lasers: allowed are elevations that all "
         "differ and angles within 90 deg"};
   }
+  for (std::size_t k = 0; k < difop.lasers; ++k)
+    difop.to_zenith = difop.to_zenith || difop.angles[k].elevation_deg > kZenithModel;
   const std::uint16_t rpm = read_be16(payload, kDifopRpmOffset);
   difop.rpm = rpm <= kMaxRpm ? rpm : 0.0;
   difop.mode_code = payload[kDifopReturnModeOffset];
   difop.mode = return_mode_of(model.family, difop.mode_code);
   return difop;
+}
+
+bool fits(const Difop& unit, const ModelTable& model) {
+  return unit.lasers == model.lasers && unit.to_zenith == model.to_zenith;
 }
 
 }  // namespace hulltrack::robosense

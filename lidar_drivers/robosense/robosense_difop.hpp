@@ -10,6 +10,8 @@
 // The number of lasers is not stated but can be counted: no two lasers of a unit look up equally far (the
 // narrowest spacing of any model is 0.33 deg). With 32 lasers all entries differ; with 16 the second half is
 // not calibrated, filled with one value, or repeats the first. A packet between the two is not believed.
+// The Bpearl shows by a laser that looks up by more than 50 deg: its own cover the 90 deg from the horizon to
+// the zenith (user manual, 6.1), no other model's look up by more than 15 deg.
 // Of these the capture proves the 32-laser Helios; the others' places are the maker's driver's.
 // Thread rule: pure functions.
 #pragma once
@@ -40,6 +42,7 @@ struct LaserAngles {
 struct Difop {
   std::size_t lasers;                      // of the unit, whatever the model that was asked for: 16 or 32
   std::array<LaserAngles, kSlots> angles;  // of the first `lasers`
+  bool to_zenith;                          // as ModelTable's
   double rpm;                              // as set; 0 = not told
   std::uint8_t mode_code;
   ReturnMode mode;  // unknown: the code is none of the model's
@@ -48,8 +51,11 @@ struct Difop {
 /// Is it a DIFOP packet of any model?
 [[nodiscard]] bool is_difop(Bytes payload);
 
-/// An error says what is wrong with the packet and what is allowed. A unit with another number of lasers than
-/// `model` is none: compare Difop::lasers.
+/// An error says what is wrong with the packet and what is allowed. A unit of another model is none: see
+/// fits().
 [[nodiscard]] Result<Difop> read_difop(Bytes payload, const ModelTable& model);
+
+/// Are the unit's lasers those of the model, as far as can be told?
+[[nodiscard]] bool fits(const Difop& unit, const ModelTable& model);
 
 }  // namespace hulltrack::robosense

@@ -54,6 +54,7 @@ struct ModelTable {
   std::string_view title;
   Family family;
   std::size_t lasers;    // 16 or 32
+  bool to_zenith;        // they look up to the zenith, else to 15 deg at most
   double distance_unit;  // m
   double range;          // m
   double lens_forward;   // m, the lens ahead of the rotor's axis: turns with it

@@ -27,12 +27,11 @@ Result<std::unique_ptr<Decoder>> make_decoder(const ModelTable& table, const Dec
   if (bytes.size() > kPacketBytes) return Error{name + " has more than the 1248 bytes of a DIFOP packet"};
   const auto difop = read_difop(bytes, table);
   if (!difop) return Error{name + " " + difop.error().message};
-  if (difop->lasers != table.lasers) {
-    return Error{name + ": " + std::string(table.name) + ": " +
-                 decoder->explain({DecodeStatus::wrong_product, static_cast<std::uint32_t>(table.lasers),
-                                   static_cast<std::uint32_t>(difop->lasers)})};
-  }
   decoder->inform(bytes);
+  if (!fits(*difop, table)) {
+    return Error{name + ": " + std::string(table.name) + ": " +
+                 decoder->explain({.status = DecodeStatus::wrong_product})};
+  }
   return std::unique_ptr<Decoder>(std::move(decoder));
 }
 

@@ -40,8 +40,9 @@ void make_difop(std::vector<std::uint8_t>& packet) {
 
 void make_angles_differ(std::vector<std::uint8_t>& packet) {
   packet[kDifopReturnModeOffset] = packet[15];
+  const std::size_t lowest = packet[14] % 2 == 0 ? 100 : 6000;  // 0.01 deg; 6000: a Bpearl's
   for (std::size_t k = 0; k < kSlots; ++k) {
-    const auto angle = static_cast<std::uint16_t>(100 + 50 * k);
+    const auto angle = static_cast<std::uint16_t>(lowest + 50 * k);
     write_be16(packet, kDifopVerticalOffset + k * kAngleBytes + 1, angle);
     if (k < 16) write_be16(packet, kDifopRs16VerticalOffset + k * kAngleBytes + 1, angle);
   }

@@ -79,6 +79,13 @@ inline RobosenseBytes difop_bytes(std::size_t lasers, std::uint8_t mode, int rpm
   return bytes;
 }
 
+/// Bpearl: laser k at (88 - 2 k) deg.
+inline RobosenseBytes bpearl_difop_bytes(std::uint8_t mode, int rpm = 600) {
+  RobosenseBytes bytes = difop_bytes(32, mode, rpm);
+  for (std::size_t k = 0; k < 32; ++k) put_angle(bytes, kVertical, k, 8800 - 200 * static_cast<int>(k));
+  return bytes;
+}
+
 /// RS16: laser k at (k - 7.5) deg, sizes of 24 bits in 0.0001 deg.
 inline RobosenseBytes rs16_difop_bytes(std::uint8_t mode, int rpm = 600) {
   RobosenseBytes bytes = empty_difop(mode, rpm);

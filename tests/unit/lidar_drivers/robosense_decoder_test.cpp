@@ -60,6 +60,7 @@ TEST(RobosenseDecoder, TablesAreTheMakers) {
   };
   const auto table32 = difop_bytes(32, 1);
   const auto rs16 = rs16_difop_bytes(1);
+  const auto bpearl = test::bpearl_difop_bytes(1);
   const Entry entries[] = {
       {"robosense_helios32", difop_bytes(32, 4), true, 20, 31, 31, -21, .5, .0025, .03498, 0, 53.63, 55.56},
       {"robosense_helios16p", difop_bytes(16, 4), true, 40, 15, 15, -5, .5, .0025, .03498, 0, 43.91, 111.12},
@@ -70,9 +71,9 @@ TEST(RobosenseDecoder, TablesAreTheMakers) {
       {"robosense_rs32", table32, false, 20, 15, 15, -5, .5, .005, .03997, 0, 44.64, 55.52},
       {"robosense_rs32", table32, false, 20, 30, 30, -20, -.5, .005, .03997, 0, 41.76, 55.52},
       {"robosense_rs32", table32, false, 20, 31, 31, -21, .5, .005, .03997, 0, 46.08, 55.52},
-      {"robosense_bpearl", table32, false, 20, 8, 8, 2, -.5, .005, .01473, .09427, 25.68, 55.52},
-      {"robosense_bpearl", table32, false, 20, 17, 17, -7, .5, .005, .01473, .09427, 3.84, 55.52},
-      {"robosense_bpearl", table32, false, 20, 31, 31, -21, .5, .005, .01473, .09427, 44.88, 55.52},
+      {"robosense_bpearl", bpearl, false, 20, 8, 8, 72, -.5, .005, .01473, .09427, 25.68, 55.52},
+      {"robosense_bpearl", bpearl, false, 20, 17, 17, 54, .5, .005, .01473, .09427, 3.84, 55.52},
+      {"robosense_bpearl", bpearl, false, 20, 31, 31, 26, .5, .005, .01473, .09427, 44.88, 55.52},
   };
   for (const Entry& e : entries) {
     SCOPED_TRACE(std::string(e.model) + " slot " + std::to_string(e.slot));

@@ -91,7 +91,7 @@ TEST(RobosenseDifop, SixteenLasersAreCountedWhateverFillsTheRest) {
   }
 }
 
-TEST(RobosenseDifop, AUnitOfAnotherNumberOfLasersIsNamed) {
+TEST(RobosenseDifop, AUnitOfAnotherModelIsNamed) {
   struct Case {
     const char* model;
     RobosenseBytes difop;
@@ -103,10 +103,16 @@ TEST(RobosenseDifop, AUnitOfAnotherNumberOfLasersIsNamed) {
       {"robosense_helios32", difop_bytes(16, 4),
        "expected a unit of 32 lasers; this is a unit of 16 lasers: model = robosense_helios16p?"},
       {"robosense_rs16", difop_bytes(32, 1),
-       "expected a unit of 16 lasers; this is a unit of 32 lasers: model = robosense_rs32 or "
-       "robosense_bpearl?"},
+       "expected a unit of 16 lasers; this is a unit of 32 lasers: model = robosense_rs32?"},
       {"robosense_rs32", test::rs16_difop_bytes(1),
        "expected a unit of 32 lasers; this is a unit of 16 lasers: model = robosense_rs16?"},
+      {"robosense_rs32", test::bpearl_difop_bytes(1),
+       "expected a unit of 32 lasers; this is a unit of 32 lasers up to the zenith: model = "
+       "robosense_bpearl?"},
+      {"robosense_bpearl", difop_bytes(32, 1),
+       "expected a unit of 32 lasers up to the zenith; this is a unit of 32 lasers: model = robosense_rs32?"},
+      {"robosense_helios32", test::bpearl_difop_bytes(0),
+       "expected a unit of 32 lasers; this is a unit of 32 lasers up to the zenith"},
   };
   for (const Case& c : cases) {
     const bool helios = std::string_view(c.model).starts_with("robosense_helios");
