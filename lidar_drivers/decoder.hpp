@@ -85,7 +85,8 @@ class Decoder {
                                              DecodedPacket& out) const = 0;
 
   /// Takes in a datagram by which the sensor tells about itself (RoboSense: DIFOP). False: it is none, or
-  /// of another model; nothing has changed then.
+  /// one that no unit sends; nothing has changed then. True for a unit of another model: its data are
+  /// refused.
   virtual bool inform(std::span<const std::uint8_t> /*payload*/) { return false; }
 
   /// One clause for the log that names what was expected and what was seen.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lidar_drivers/hesai/hesai_models.hpp"
+#include "lidar_drivers/robosense/robosense_models.hpp"
 #include "lidar_drivers/velodyne/velodyne_models.hpp"
 
 namespace hulltrack {
@@ -13,7 +14,7 @@ namespace {
 
 std::vector<LidarModel> all_models() {
   std::vector<LidarModel> all;
-  for (const auto& vendor : {velodyne::lidar_models(), hesai::lidar_models()})
+  for (const auto& vendor : {velodyne::lidar_models(), hesai::lidar_models(), robosense::lidar_models()})
     all.insert(all.end(), vendor.begin(), vendor.end());
   return all;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lidar_drivers/sim/hesai_encoder.hpp"
+#include "lidar_drivers/sim/robosense_encoder.hpp"
 #include "lidar_drivers/sim/velodyne_encoder.hpp"
 
 namespace hulltrack::sim {
@@ -24,6 +25,7 @@ Result<std::unique_ptr<const LidarEncoder>> make_lidar_encoder(std::string_view 
                                                                const LidarEncoderConfig& config) {
   if (model.starts_with("velodyne_")) return make<VelodyneEncoder>(model, config);
   if (model.starts_with("hesai_")) return make<HesaiEncoder>(model, config);
+  if (model.starts_with("robosense_")) return make<RobosenseEncoder>(model, config);
   return Error{"there is no encoder for \"" + std::string(model) + "\""};
 }
 

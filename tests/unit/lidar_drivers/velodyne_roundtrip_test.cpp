@@ -107,7 +107,7 @@ TEST(ModelRegistry, EveryModelMakesItsDecoderAndHasItsOwnName) {
   for (const LidarModel& model : lidar_models()) {
     EXPECT_EQ(find_lidar_model(model.name), &model);
     EXPECT_TRUE(make_lidar_decoder(model, {}, {}).ok()) << model.name;
-    EXPECT_EQ(model.port, 2368);
+    EXPECT_NE(model.port, 0) << model.name;
   }
   EXPECT_EQ(find_lidar_model("velodyne"), nullptr);
 }
