@@ -206,16 +206,12 @@ void PatchEvidence::vote(std::uint32_t patch) {
 }
 
 /// One structure takes the pose along wherever it stands; a second one that is in place too tells, as far as
-/// the map has two. Along the ship and across her: where hatches stand and how broad they are differs between
-/// ships, and where nothing is in place what holds the pose can be moved. A coaming's top in place says that
-/// the hatches are as high above the deck as the map's.
+/// the map has two. Along the ship, since hatches differ there, and where none is in place what holds the
+/// pose can be moved. A coaming's top in place says that the hatches are as high above the deck as the map's.
 bool PatchEvidence::has_seen_enough(const PatchReport& report) const {
-  const auto agree = [this](const StructureCount& count, SurfaceClass faces) {
-    return count.in_place >= std::min(kFewestStructures, structures_.mapped(faces));
-  };
   return frames_ >= kFramesToDecide && report.judged >= kFewestToDecide &&
          report.judged >= kShareToDecide * report.in_view && (report.rims_in_place > 0 || !has_rims_) &&
-         agree(report.along, SurfaceClass::transverse) && agree(report.across, SurfaceClass::longitudinal);
+         report.along.in_place >= std::min(kFewestStructures, structures_.mapped(SurfaceClass::transverse));
 }
 
 PatchReport PatchEvidence::report() {

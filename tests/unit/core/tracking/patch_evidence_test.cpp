@@ -287,15 +287,6 @@ TEST_F(Ship, OneHatchInViewDoesNotDecideWhereTheMapHasMore) {
   EXPECT_TRUE(look(0, 6).decided) << "once is enough";
 }
 
-TEST_F(Ship, OneSideInViewDoesNotDecideWhereTheMapHasMoreAcross) {
-  std::vector<MapPatch> mapped = hatch_and_house();
-  mapped.push_back({.faces = SurfaceClass::longitudinal, .place = 9.0F, .pit = 0});
-  mapped.push_back({.faces = SurfaceClass::longitudinal, .place = 16.0F});
-  evidence.reset(mapped);
-  EXPECT_FALSE(look(0, 11, 0.0, 50).decided);
-  EXPECT_TRUE(look(0, 12).decided);
-}
-
 TEST_F(Ship, WhereTheMapHasOneStructureOneDecides) {
   std::vector<MapPatch> mapped = hatch_and_house();
   mapped.resize(6);
