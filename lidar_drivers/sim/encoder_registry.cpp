@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "lidar_drivers/sim/ouster_encoder.hpp"
 #include "lidar_drivers/sim/velodyne_encoder.hpp"
 
 namespace hulltrack::sim {
@@ -22,6 +23,7 @@ Result<std::unique_ptr<const LidarEncoder>> make(std::string_view model, const L
 Result<std::unique_ptr<const LidarEncoder>> make_lidar_encoder(std::string_view model,
                                                                const LidarEncoderConfig& config) {
   if (model.starts_with("velodyne_")) return make<VelodyneEncoder>(model, config);
+  if (model.starts_with("ouster_")) return make<OusterEncoder>(model, config);
   return Error{"there is no encoder for \"" + std::string(model) + "\""};
 }
 
