@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lidar_drivers/livox/livox_models.hpp"
 #include "lidar_drivers/ouster/ouster_models.hpp"
 #include "lidar_drivers/velodyne/velodyne_models.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 std::vector<LidarModel> all_models() {
   std::vector<LidarModel> all;
-  for (const auto& vendor : {velodyne::lidar_models(), ouster::lidar_models()}) all.insert(all.end(), vendor.begin(), vendor.end());
+  for (const auto& vendor : {velodyne::lidar_models(), ouster::lidar_models(), livox::lidar_models()}) all.insert(all.end(), vendor.begin(), vendor.end());
   return all;
 }
 

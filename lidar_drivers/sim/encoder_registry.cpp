@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "lidar_drivers/sim/livox_encoder.hpp"
 #include "lidar_drivers/sim/ouster_encoder.hpp"
 #include "lidar_drivers/sim/velodyne_encoder.hpp"
 
@@ -24,6 +25,7 @@ Result<std::unique_ptr<const LidarEncoder>> make_lidar_encoder(std::string_view 
                                                                const LidarEncoderConfig& config) {
   if (model.starts_with("velodyne_")) return make<VelodyneEncoder>(model, config);
   if (model.starts_with("ouster_")) return make<OusterEncoder>(model, config);
+  if (model == "livox_mid360") return make<LivoxEncoder>(model, config);
   return Error{"there is no encoder for \"" + std::string(model) + "\""};
 }
 
