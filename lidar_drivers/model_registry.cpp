@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "lidar_drivers/hesai/hesai_models.hpp"
+#include "lidar_drivers/livox/livox_models.hpp"
+#include "lidar_drivers/ouster/ouster_models.hpp"
 #include "lidar_drivers/robosense/robosense_models.hpp"
 #include "lidar_drivers/velodyne/velodyne_models.hpp"
 
@@ -12,10 +14,17 @@ namespace hulltrack {
 
 namespace {
 
+/// One line a vendor.
 std::vector<LidarModel> all_models() {
   std::vector<LidarModel> all;
-  for (const auto& vendor : {velodyne::lidar_models(), hesai::lidar_models(), robosense::lidar_models()})
-    all.insert(all.end(), vendor.begin(), vendor.end());
+  const auto add = [&](const std::vector<LidarModel>& rows) {
+    all.insert(all.end(), rows.begin(), rows.end());
+  };
+  add(velodyne::lidar_models());
+  add(ouster::lidar_models());
+  add(hesai::lidar_models());
+  add(robosense::lidar_models());
+  add(livox::lidar_models());
   return all;
 }
 

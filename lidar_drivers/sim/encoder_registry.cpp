@@ -5,6 +5,8 @@
 
 #include "lidar_drivers/sim/hesai_encoder.hpp"
 #include "lidar_drivers/sim/robosense_encoder.hpp"
+#include "lidar_drivers/sim/livox_encoder.hpp"
+#include "lidar_drivers/sim/ouster_encoder.hpp"
 #include "lidar_drivers/sim/velodyne_encoder.hpp"
 
 namespace hulltrack::sim {
@@ -26,6 +28,8 @@ Result<std::unique_ptr<const LidarEncoder>> make_lidar_encoder(std::string_view 
   if (model.starts_with("velodyne_")) return make<VelodyneEncoder>(model, config);
   if (model.starts_with("hesai_")) return make<HesaiEncoder>(model, config);
   if (model.starts_with("robosense_")) return make<RobosenseEncoder>(model, config);
+  if (model.starts_with("ouster_")) return make<OusterEncoder>(model, config);
+  if (model == "livox_mid360") return make<LivoxEncoder>(model, config);
   return Error{"there is no encoder for \"" + std::string(model) + "\""};
 }
 
