@@ -43,7 +43,7 @@ Nanoseconds SensorClock::note(Nanoseconds sensor, WallTime host) {
     best_ = offset;
     so_far_ = offset;
     second_began_ = host;
-  } else if (elapsed < Nanoseconds::zero() || elapsed >= kSecond) {
+  } else if (std::chrono::abs(elapsed) >= kSecond) {
     best_ = so_far_;
     seconds_[count_++ % kSeconds] = {second_began_, *best_};
     so_far_ = offset;
