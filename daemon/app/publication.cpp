@@ -93,7 +93,8 @@ State Publication::state(const PublicationContext& context, SteadyTime now) cons
   if (newest_.state == State::tracking) {
     const Nanoseconds age = age_of(newest_, now);
     const bool fresh = age <= max_age_ && age >= -max_age_;
-    return newest_.health && fresh ? State::tracking : State::degraded;
+    const bool a_lidar_is_silent = (context.standing & fault::lidar_silent) != 0;
+    return newest_.health && fresh && !a_lidar_is_silent ? State::tracking : State::degraded;
   }
   return newest_.state;
 }

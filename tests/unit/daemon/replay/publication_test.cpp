@@ -123,6 +123,18 @@ TEST(Publication, EventBitsStayForASecondAndConditionsAsLongAsTheyHold) {
   EXPECT_EQ(publication.block({}, kStart + milliseconds(1500)).faults, 0);
 }
 
+TEST(Publication, OneOfSeveralLidarsSilentIsDegradedAndItsFaultNotTheEnd) {
+  Publication publication(milliseconds(500));
+  publication.frame(healthy_frame(kStart, 1, 0.0), kStart, {});
+  PublicationContext context;
+  context.standing = fault::lidar_silent;
+  const WriteBlock block = publication.block(context, kStart);
+  EXPECT_EQ(block.state, State::degraded);
+  EXPECT_FALSE(block.health);
+  EXPECT_EQ(block.faults, fault::lidar_silent);
+  EXPECT_TRUE(publication.block({}, kStart).health) << "it is back";
+}
+
 TEST(Publication, TheHighestStateThatAppliesIsWritten) {
   Publication publication(milliseconds(500));
   PublicationContext context;
