@@ -117,10 +117,20 @@ void check_plc(const PlcConfig& plc, Broken& broken) {
   }
 }
 
+/// A port that both listen on, for data or information; 0 = none.
+std::uint16_t common_port(const LidarConfig& a, const LidarConfig& b) {
+  const bool on_data_port = a.port == b.port || a.port == b.information_port;
+  if (on_data_port) {
+    return a.port;
+  }
+  const bool on_information_port = a.information_port == b.port || a.information_port == b.information_port;
+  return on_information_port ? a.information_port : std::uint16_t{0};
+}
+
 /// LiDARs of one bind and port share a socket: whose datagram is it?
 bool share_datagrams(const LidarConfig& a, const LidarConfig& b) {
   const bool same_source = a.source == b.source || a.source.empty() || b.source.empty();
-  return a.port == b.port && a.bind == b.bind && same_source;
+  return common_port(a, b) != 0 && a.bind == b.bind && same_source;
 }
 
 /// A group does not arrive at a bound address, so that its socket has to be open for every address.
@@ -130,7 +140,7 @@ bool listens_everywhere(const LidarConfig& lidar) {
 
 /// Two sockets of which the second cannot be opened.
 bool exclude_each_other(const LidarConfig& a, const LidarConfig& b) {
-  return a.port == b.port && a.bind != b.bind && (listens_everywhere(a) || listens_everywhere(b));
+  return common_port(a, b) != 0 && a.bind != b.bind && (listens_everywhere(a) || listens_everywhere(b));
 }
 
 void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
@@ -152,8 +162,8 @@ void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
       const std::vector<std::string> keys{
           section + ".port", section,         section + ".source",    section + ".bind",   other + ".port",
           other + ".source", other + ".bind", section + ".multicast", other + ".multicast"};
-      const std::string taken =
-          "is " + std::to_string(lidar.port) + ", where LiDAR \"" + lidars[j].name + "\" listens too";
+      const std::string taken = "is " + std::to_string(common_port(lidar, lidars[j])) + ", where LiDAR \"" +
+                                lidars[j].name + "\" listens too";
       if (share_datagrams(lidar, lidars[j])) {
         broken.push_back({keys, taken + "; give each a port of its own, or a `source` to each of them"});
       }
@@ -162,6 +172,28 @@ void check_lidars(const std::vector<LidarConfig>& lidars, Broken& broken) {
                                         "`multicast`); give each a port of its own, or the same `bind` and a "
                                         "`source` to each of them"});
       }
+    }
+  }
+}
+
+/// What a model cannot do.
+void check_models(const Config& config, std::span<const LidarModel> models, Broken& broken) {
+  for (std::size_t i = 0; i < config.lidars.size(); ++i) {
+    const LidarConfig& lidar = config.lidars[i];
+    const auto model = std::ranges::find(models, lidar.model, &LidarModel::name);
+    if (model == models.end()) {
+      continue;
+    }
+    const std::string section = "lidar." + std::to_string(i);
+    if (i == 0 && !model->rotates && config.framing.framing == Framing::revolution) {
+      broken.push_back({{"tracking.framing", section + ".model"},
+                        "is \"revolution\", but the first LiDAR, a " + lidar.model +
+                            ", does not rotate; it must be \"period\""});
+    }
+    if (model->information_port == 0 && lidar.information_port != 0) {
+      broken.push_back({{section + ".information_port", section + ".model"},
+                        "is " + std::to_string(lidar.information_port) + ", but a " + lidar.model +
+                            " tells nothing about itself; leave it out"});
     }
   }
 }
@@ -182,10 +214,11 @@ void check_health(const HealthConfig& health, Broken& broken) {
 
 }  // namespace
 
-std::vector<BrokenRule> check_cross_rules(const Config& config) {
+std::vector<BrokenRule> check_cross_rules(const Config& config, std::span<const LidarModel> models) {
   Broken broken;
   check_plc(config.plc, broken);
   check_lidars(config.lidars, broken);
+  check_models(config, models, broken);
   check_health(config.tracker.health, broken);
   return broken;
 }

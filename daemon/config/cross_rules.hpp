@@ -3,10 +3,12 @@
 // Pure functions of a Config whose single values are legal. The man page lists the same rules.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/config/config.hpp"
+#include "lidar_drivers/lidar_model.hpp"
 
 namespace hulltrack {
 
@@ -15,6 +17,8 @@ struct BrokenRule {
   std::string message;            // what is wrong; what is allowed
 };
 
-[[nodiscard]] std::vector<BrokenRule> check_cross_rules(const Config& config);
+/// `models`: those of this build; a LiDAR of another one is judged without.
+[[nodiscard]] std::vector<BrokenRule> check_cross_rules(const Config& config,
+                                                        std::span<const LidarModel> models);
 
 }  // namespace hulltrack

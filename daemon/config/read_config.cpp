@@ -46,8 +46,8 @@ int line_to_blame(const std::vector<std::string>& keys, const Lines& lines) {
   return 1;
 }
 
-void add_broken_rules(Document& document, const std::string& file) {
-  for (const BrokenRule& rule : check_cross_rules(document.config)) {
+void add_broken_rules(Document& document, std::span<const LidarModel> models, const std::string& file) {
+  for (const BrokenRule& rule : check_cross_rules(document.config, models)) {
     const bool known_bad = std::any_of(rule.keys.begin(), rule.keys.end(), [&](const std::string& key) {
       return document.bad_keys.contains(key);
     });
@@ -109,7 +109,7 @@ ConfigReading parse_config(std::string_view text, const std::filesystem::path& f
   }
   Document document = read_document(text, name, models);
   if (!document.lines.empty()) {  // otherwise it is not even TOML
-    add_broken_rules(document, name);
+    add_broken_rules(document, models, name);
   }
   sort_by_line(document.problems);
   resolve_paths(document.config, file);

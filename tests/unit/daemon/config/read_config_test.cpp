@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 const std::vector<LidarModel> kModels = {{.name = "velodyne_vlp16", .port = 2368},
@@ -483,6 +484,26 @@ TEST(ReadConfig, PortsAreTheModelsOwnUnlessTheyAreGiven) {
   EXPECT_EQ(lidar("").information_port, 7788);
   EXPECT_EQ(lidar("port = 2000\n").port, 2000);
   EXPECT_EQ(lidar("information_port = 0\n").information_port, 0);
+}
+
+TEST(ReadConfig, WhatAModelCannotDoIsAProblem) {
+  const std::vector<LidarModel> models{{.name = "dull", .port = 1},
+                                       {.name = "still", .port = 2, .rotates = false},
+                                       {.name = "talkative", .port = 3, .information_port = 4}};
+  const auto first_problem = [&](const std::string& lidars, const std::string& rest) {
+    const auto reading = parse_config(lidars + kPlc + kHull + rest, "/site/a.toml", models);
+    return reading.problems.empty() ? std::string() : to_string(reading.problems.front());
+  };
+  const auto lidar = [](const std::string& name, const std::string& model) {
+    return "[[lidar]]\nname = \"" + name + "\"\nmodel = \"" + model + "\"\n";
+  };
+  const std::string turns = "[tracking]\nframing = \"revolution\"\n";
+  EXPECT_THAT(first_problem(lidar("a", "still"), turns), HasSubstr("a still, does not rotate"));
+  EXPECT_THAT(first_problem(lidar("a", "dull") + lidar("b", "still"), turns), IsEmpty());
+  EXPECT_THAT(first_problem(lidar("a", "dull") + "information_port = 9\n", ""),
+              HasSubstr("a dull tells nothing about itself"));
+  EXPECT_THAT(first_problem(lidar("a", "talkative") + lidar("b", "talkative") + "port = 5\n", ""),
+              HasSubstr("is 4, where LiDAR \"a\" listens too"));
 }
 
 }  // namespace
