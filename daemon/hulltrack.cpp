@@ -18,6 +18,7 @@ std::string program_name(const CLI::App& app) {
 void add_subcommands(CLI::App& app) {
   add_decode(app);
   add_models(app);
+  add_probe(app);
   add_replay(app);
   add_simulate(app);
   app.require_subcommand(1);

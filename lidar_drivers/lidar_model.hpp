@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string_view>
 
 #include "core/base/result.hpp"
@@ -32,6 +33,9 @@ struct LidarModel {
   using Make = std::function<Result<std::unique_ptr<Decoder>>(const DecoderOptions&,
                                                               const std::filesystem::path& calibration)>;
   Make make_decoder;  // through make_lidar_decoder()
+
+  /// Where a file is required: could these bytes be its datagram? For telling a person what arrives.
+  std::function<bool(std::span<const std::uint8_t>)> looks_like = {};
 };
 
 }  // namespace hulltrack

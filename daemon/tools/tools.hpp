@@ -29,6 +29,7 @@ class ToolError : public std::runtime_error {
 
 void add_decode(CLI::App& app);
 void add_models(CLI::App& app);
+void add_probe(CLI::App& app);
 void add_replay(CLI::App& app);
 void add_simulate(CLI::App& app);
 

@@ -1,5 +1,6 @@
 #include "lidar_drivers/ouster/ouster_models.hpp"
 
+#include "lidar_drivers/bytes.hpp"
 #include "lidar_drivers/ouster/ouster_decoder.hpp"
 
 namespace hulltrack::ouster {
@@ -10,6 +11,20 @@ Result<std::unique_ptr<Decoder>> make(const DecoderOptions& options, const std::
   const Result<Metadata> metadata = read_metadata(file);
   if (!metadata) return metadata.error();
   return std::unique_ptr<Decoder>(std::make_unique<OusterDecoder>(*metadata, options));
+}
+
+/// The size is that of some profile, number of beams and columns, and the header says so where there is one.
+bool looks_like(std::span<const std::uint8_t> payload) {
+  for (const Layout& layout : kLayouts) {
+    for (const std::size_t beams : {16U, 32U, 64U, 128U}) {
+      for (const std::size_t columns : {8U, 16U, 32U}) {
+        const bool told =
+            layout.packet_header == 0 || (payload.size() >= 2 && read_le16(payload, 0) == kLidarPacket);
+        if (payload.size() == layout.packet_bytes(columns, beams) && told) return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -24,7 +39,8 @@ std::vector<LidarModel> lidar_models() {
            .channels = 128,
            .calibration = LidarModel::Calibration::required,
            .calibration_file = "metadata JSON",
-           .make_decoder = make}};
+           .make_decoder = make,
+           .looks_like = looks_like}};
 }
 
 }  // namespace hulltrack::ouster
