@@ -15,12 +15,12 @@
 namespace hulltrack {
 
 struct LidarModel {
-  std::string_view name;  // as in the configuration
-  std::string_view vendor;
-  std::string_view title;  // the maker's own name
-  std::uint16_t port;      // UDP port from the factory
-  double range;            // m, the maker's statement
-  int channels;
+  std::string_view name = {};  // as in the configuration
+  std::string_view vendor = {};
+  std::string_view title = {};  // the maker's own name
+  std::uint16_t port = 0;       // UDP port from the factory
+  double range = 0.0;           // m, the maker's statement
+  int channels = 0;
 
   enum class Calibration : std::uint8_t { none, optional, required } calibration = Calibration::none;
   std::string_view calibration_file = {};  // what it is, for tables and messages; empty with none
@@ -32,7 +32,7 @@ struct LidarModel {
   /// An error says what is wrong with the calibration file. An empty path: none is given.
   using Make = std::function<Result<std::unique_ptr<Decoder>>(const DecoderOptions&,
                                                               const std::filesystem::path& calibration)>;
-  Make make_decoder;  // through make_lidar_decoder()
+  Make make_decoder = {};  // through make_lidar_decoder()
 
   /// Where a file is required: could these bytes be its datagram? For telling a person what arrives.
   std::function<bool(std::span<const std::uint8_t>)> looks_like = {};

@@ -51,6 +51,9 @@ const char* consequence(State state) {
   return "";
 }
 
+/// A line that was held back for longer says since when its state has lasted.
+constexpr std::chrono::seconds kWorthTelling{1};
+
 LogLevel level_of(State state) {
   const bool calm = state != State::degraded && state != State::lost && state != State::fault;
   return calm ? LogLevel::notice : LogLevel::warning;
@@ -82,6 +85,7 @@ std::string fault_words(Faults faults) {
 void StateLog::update(const WriteBlock& registers, const std::string& reason, SteadyTime now) {
   if (current_ != registers.state) {
     current_ = registers.state;
+    current_since_ = now;
     ++unannounced_;
   }
   if (told_ == current_) {
@@ -95,8 +99,11 @@ void StateLog::update(const WriteBlock& registers, const std::string& reason, St
 
 void StateLog::announce(const WriteBlock& registers, const std::string& reason, SteadyTime now) {
   std::string line = format_text("state %s", state_name(registers.state));
+  if (now - current_since_ >= kWorthTelling) {
+    line += format_text(" for %.1f s,", to_seconds(now - current_since_));
+  }
   if (told_) {
-    line += format_text(" after %.1f s of %s", to_seconds(now - told_since_), state_name(*told_));
+    line += format_text(" after %.1f s of %s", to_seconds(current_since_ - told_since_), state_name(*told_));
   }
   if (unannounced_ > 1) {
     line += " and " + counted(unannounced_ - 1, "change") + " in between";
@@ -109,7 +116,7 @@ void StateLog::announce(const WriteBlock& registers, const std::string& reason, 
   }
   sink_.write(level_of(registers.state), line + ". " + consequence(registers.state));
   told_ = registers.state;
-  told_since_ = now;
+  told_since_ = current_since_;
   unannounced_ = 0;
   last_line_[static_cast<std::size_t>(registers.state)] = now;
 }

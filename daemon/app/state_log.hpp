@@ -32,6 +32,7 @@ class StateLog {
   std::optional<State> told_;
   SteadyTime told_since_{};
   std::optional<State> current_;
+  SteadyTime current_since_{};
   unsigned unannounced_ = 0;  // changes since the last line
   std::array<std::optional<SteadyTime>, 8> last_line_{};
 };

@@ -64,7 +64,7 @@ TEST(StateLog, TheLastWordIsTrueWithinTenSeconds) {
   states.update(block_of(State::tracking), "", SteadyTime{} + seconds(2));
   EXPECT_THAT(log.last(), HasSubstr("state lost"));
   states.update(block_of(State::tracking), "", SteadyTime{} + seconds(10));
-  EXPECT_THAT(log.last(), HasSubstr("state tracking after 9.0 s of lost"));
+  EXPECT_THAT(log.last(), HasSubstr("state tracking for 8.0 s, after 1.0 s of lost"));
 }
 
 TEST(StateLog, AStopIsAlwaysTold) {
