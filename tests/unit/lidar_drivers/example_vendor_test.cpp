@@ -35,8 +35,10 @@ class ExampleDecoder final : public Decoder {
 
   [[nodiscard]] DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                      DecodedPacket& out) const override {
-    out = DecodedPacket{.points = std::move(out.points)};
     out.points.clear();
+    out.zero_crossing.reset();
+    out.cut_azimuth.reset();
+    out.counter.reset();
     if (payload.size() != kPacketBytes)
       return {DecodeStatus::wrong_size, kPacketBytes, static_cast<std::uint32_t>(payload.size())};
     if (const std::uint16_t flag = read_le16(payload, 0); flag != kFlag)
