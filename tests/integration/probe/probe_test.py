@@ -43,10 +43,9 @@ def check_live(tool, folder):
     plc, lidar = free_port(socket.SOCK_STREAM), free_port(socket.SOCK_DGRAM)
     sender = subprocess.Popen(
         [tool, "simulate", "--lidar", "hesai_xt32", "--joints", "3.5,90,1", "--seconds", "30", "--plc-port", str(plc),
-         "--lidar-to", f"127.0.0.1:{lidar}", "--config-out", str(folder / "site")],
-        stderr=subprocess.PIPE, text=True)
+         "--lidar-to", f"127.0.0.1:{lidar}"], stdout=subprocess.PIPE, text=True)
     try:
-        for line in sender.stderr:  # it listens before it says so
+        for line in sender.stdout:  # it listens before it says so
             if "the PLC listens" in line:
                 break
         told = run(tool, "probe", "--port", lidar, "--seconds", 2, "--plc", f"127.0.0.1:{plc}")

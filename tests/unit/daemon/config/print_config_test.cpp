@@ -151,6 +151,7 @@ TEST(Config, DefaultsAreTheContracts) {
                                              R"(lidar.model = "velodyne_vlp16")",
                                              R"(lidar.bind = "0.0.0.0")",
                                              "lidar.port = 2368",
+                                             "lidar.information_port = 0",
                                              R"(lidar.source = "")",
                                              R"(lidar.multicast = "")",
                                              R"(lidar.calibration = "")",
