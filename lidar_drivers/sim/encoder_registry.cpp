@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "lidar_drivers/sim/hesai_encoder.hpp"
-#include "lidar_drivers/sim/robosense_encoder.hpp"
 #include "lidar_drivers/sim/livox_encoder.hpp"
 #include "lidar_drivers/sim/ouster_encoder.hpp"
+#include "lidar_drivers/sim/robosense_encoder.hpp"
 #include "lidar_drivers/sim/velodyne_encoder.hpp"
 
 namespace hulltrack::sim {
