@@ -6,22 +6,11 @@
 #include <numbers>
 
 #include "core/geometry/se3.hpp"
+#include "lidar_drivers/rotor.hpp"
 
 namespace hulltrack::hesai {
 
 namespace {
-
-/// A turn slower than any model's lowest setting (300 rpm) tells nothing about how long a jump took.
-constexpr double kMinRpmToTimeJumps = 200.0;
-/// Azimuth may come back by this much when the rotor stands still, 0.01 deg.
-constexpr int kMaxBackwardStep = 10;
-/// A step this far from the usual one is still the same rotation, 0.01 deg.
-constexpr double kMinStepTolerance = 3.0;
-
-int forward_step(int from, int to) {
-  const int step = (to - from + kCentidegrees) % kCentidegrees;
-  return step >= kCentidegrees - kMaxBackwardStep ? step - kCentidegrees : step;
-}
 
 /// Steps are rounded to 1, and a motor holds its speed to a few hundredths.
 bool agree(double motor_step, double seen_step) {
@@ -48,11 +37,9 @@ std::optional<double> Rotation::cut_azimuth() const {
 std::optional<Nanoseconds> Rotation::zero_crossing(Nanoseconds first, Nanoseconds last) const {
   const auto crossing = [&](double from, double ahead, Nanoseconds at,
                             Nanoseconds span) -> std::optional<Nanoseconds> {
-    if (ahead <= 0.0 || from + ahead < kCentidegrees) return std::nullopt;
-    const double share = (kCentidegrees - from) / ahead;
-    const Nanoseconds found = at + Nanoseconds(std::llround(share * static_cast<double>(span.count())));
-    if (found < first || found > last) return std::nullopt;
-    return found;
+    const auto passed = rotor::time_to_zero(from, ahead, span);
+    if (!passed || at + *passed < first || at + *passed > last) return std::nullopt;
+    return at + *passed;
   };
   // Before the first reference and after the last one the rotor goes on evenly.
   if (const auto found =
@@ -60,7 +47,7 @@ std::optional<Nanoseconds> Rotation::zero_crossing(Nanoseconds first, Nanosecond
     return found;
   for (std::size_t g = 0; g < groups; ++g) {
     const bool has_next = g + 1 < groups;
-    const double ahead = has_next ? forward_step(azimuth[g], azimuth[g + 1]) : step;
+    const double ahead = has_next ? rotor::forward_step(azimuth[g], azimuth[g + 1]) : step;
     const Nanoseconds span = has_next ? time[g + 1] - time[g] : period;
     if (const auto found = crossing(azimuth[g], ahead, time[g], span)) return found;
   }
@@ -78,7 +65,7 @@ std::optional<Rotation> read_rotation(std::span<const int> azimuths, double moto
   std::array<int, kMaxBlocks> step{};
   int turned = 0;
   for (std::size_t g = 0; g < steps; ++g) {
-    step[g] = forward_step(azimuths[g], azimuths[g + 1]);
+    step[g] = rotor::forward_step(azimuths[g], azimuths[g + 1]);
     turned += step[g];
   }
   std::array<int, kMaxBlocks> sorted = step;
@@ -97,22 +84,12 @@ std::optional<Rotation> read_rotation(std::span<const int> azimuths, double moto
   }
 
   const double expected = only_jumps ? motor_step : usual;
-  const double tolerance = std::max(kMinStepTolerance, expected / 2.0);
-  int fitting = 0;
-  int sum = 0;
-  for (std::size_t g = 0; g < steps; ++g) {
-    r.jump[g] = std::abs(step[g] - expected) > tolerance;
-    if (r.jump[g]) continue;
-    ++fitting;
-    sum += step[g];
-  }
-  const double seen = fitting > 0 ? std::max(0.0, static_cast<double>(sum) / fitting) : motor_step;
+  const double seen = rotor::fit_steps(std::span(step).first(steps), expected, r.jump).value_or(motor_step);
   r.step = motor_rpm <= kMaxRpm && agree(motor_step, seen) ? motor_step : seen;
 
-  const bool rate_known = r.step >= kMinRpmToTimeJumps * step_per_rpm;
+  const bool rate_known = r.step >= rotor::kMinRpmToTimeJumps * step_per_rpm;
   for (std::size_t g = 0; g < steps; ++g) {
-    const double periods = r.jump[g] && rate_known ? std::max(1.0, step[g] / r.step) : 1.0;
-    r.time[g + 1] = r.time[g] + Nanoseconds(std::llround(periods * static_cast<double>(period.count())));
+    r.time[g + 1] = r.time[g] + rotor::duration_of(step[g], r.jump[g], r.step, rate_known, period);
   }
   return r;
 }

@@ -8,6 +8,7 @@
 #include "core/geometry/se3.hpp"
 #include "lidar_drivers/bytes.hpp"
 #include "lidar_drivers/robosense/robosense_rotation.hpp"
+#include "lidar_drivers/rotor.hpp"
 
 namespace hulltrack::robosense {
 
@@ -108,10 +109,9 @@ DecodeOutcome RobosenseDecoder::decode(std::span<const std::uint8_t> payload, De
     if (has_next && rotation.jump[g]) out.cut_azimuth = centidegrees_to_rad(rotation.azimuth[g]);
     const int step = has_next ? rotation.step[g] : rotation.advance[g];
     const Nanoseconds span = has_next ? rotation.time[g + 1] - rotation.time[g] : rotation.span;
-    if (out.zero_crossing || step <= 0 || rotation.azimuth[g] + step < kCentidegrees) continue;
-    const double share = static_cast<double>(kCentidegrees - rotation.azimuth[g]) / step;
-    const Nanoseconds passed(std::llround(share * static_cast<double>(span.count())));
-    const Nanoseconds crossing = rotation.time[g] + passed - rotation.duration;
+    const auto passed = rotor::time_to_zero(rotation.azimuth[g], step, span);
+    if (!passed || out.zero_crossing) continue;
+    const Nanoseconds crossing = rotation.time[g] + *passed - rotation.duration;
     if (crossing <= Nanoseconds::zero()) out.zero_crossing = crossing;
   }
   for (std::size_t block = 0; block < kBlocks; ++block) emit_block(payload, block, rotation, out);

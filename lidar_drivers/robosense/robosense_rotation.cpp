@@ -4,23 +4,14 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "lidar_drivers/rotor.hpp"
+
 namespace hulltrack::robosense {
 
 namespace {
 
-/// A turn slower than any model's lowest setting (300 rpm) tells nothing about how long a jump took.
-constexpr double kMinRpm = 200.0;
-/// Azimuth may come back by this much when the rotor stands still, 0.01 deg.
-constexpr int kMaxBackwardStep = 10;
-/// A step this far from the packet's median is still the same rotation, 0.01 deg.
-constexpr int kMinStepTolerance = 3;
 /// Steps are whole 0.01 deg: the mean of a packet's may be off the set rate's by one.
 constexpr double kSetRateTolerance = 1.0;
-
-int forward_step(int from, int to) {
-  const int step = (to - from + kCentidegrees) % kCentidegrees;
-  return step >= kCentidegrees - kMaxBackwardStep ? step - kCentidegrees : step;
-}
 
 /// Are the blocks pairs of one azimuth that go on turning? Not told where nothing turns.
 std::optional<bool> blocks_are_pairs(const std::array<int, kBlocks>& azimuth) {
@@ -67,7 +58,7 @@ DecodeOutcome RobosenseDecoder::read_rotation(std::span<const std::uint8_t> payl
 DecodeOutcome RobosenseDecoder::find_jumps(Rotation& r) const {
   int turned = 0;
   for (std::size_t g = 0; g + 1 < r.groups; ++g) {
-    r.step[g] = forward_step(r.azimuth[g], r.azimuth[g + 1]);
+    r.step[g] = rotor::forward_step(r.azimuth[g], r.azimuth[g + 1]);
     turned += r.step[g];
   }
   const int median = r.median_step();
@@ -77,7 +68,7 @@ DecodeOutcome RobosenseDecoder::find_jumps(Rotation& r) const {
 
   // Sixteen lasers: the echoes' layout shows in nothing but the step, half as wide with two echoes.
   const double set_step = r.step_at(unit_->rpm);
-  if (model_.lasers == 16 && unit_->rpm >= kMinRpm) {
+  if (model_.lasers == 16 && unit_->rpm >= rotor::kMinRpmToTimeJumps) {
     const double other = r.dual ? 2.0 * set_step : 0.5 * set_step;
     if (std::abs(median - other) < 0.2 * other) {
       return {DecodeStatus::wrong_return_mode, static_cast<std::uint32_t>(std::lround(set_step)),
@@ -85,27 +76,17 @@ DecodeOutcome RobosenseDecoder::find_jumps(Rotation& r) const {
     }
   }
 
-  int fitting_steps = 0;
-  int fitting_sum = 0;
-  const int tolerance = std::max(kMinStepTolerance, median / 2);
-  for (std::size_t g = 0; g + 1 < r.groups; ++g) {
-    r.jump[g] = std::abs(r.step[g] - median) > tolerance;
-    if (r.jump[g]) continue;
-    ++fitting_steps;
-    fitting_sum += r.step[g];
-  }
-  r.rate = fitting_steps > 0 ? std::max(0.0, static_cast<double>(fitting_sum) / fitting_steps) : 0.0;
+  r.rate = rotor::fit_steps(std::span(r.step).first(r.groups - 1), median, r.jump).value_or(0.0);
 
   // The set rate while the rotor keeps to it: it does not carry the packet's own scatter.
   const bool at_set_rate = std::abs(std::round(set_step) - r.rate) <= kSetRateTolerance;
   const int nominal = static_cast<int>(std::lround(at_set_rate ? set_step : r.rate));
-  const bool rate_known = r.rate >= r.step_at(kMinRpm);
+  const bool rate_known = r.rate >= r.step_at(rotor::kMinRpmToTimeJumps);
   for (std::size_t g = 0; g < r.groups; ++g) {
     const bool has_next = g + 1 < r.groups;
     r.advance[g] = has_next && !r.jump[g] ? r.step[g] : nominal;
     if (!has_next) break;
-    const double spans = r.jump[g] && rate_known ? std::max(1.0, r.step[g] / r.rate) : 1.0;
-    r.time[g + 1] = r.time[g] + Nanoseconds(std::llround(spans * static_cast<double>(r.span.count())));
+    r.time[g + 1] = r.time[g] + rotor::duration_of(r.step[g], r.jump[g], r.rate, rate_known, r.span);
   }
   r.duration = r.time[r.groups - 1] + r.last_pulse;
   return {};

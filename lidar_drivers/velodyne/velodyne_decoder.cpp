@@ -8,17 +8,11 @@
 
 #include "core/geometry/se3.hpp"
 #include "lidar_drivers/bytes.hpp"
+#include "lidar_drivers/rotor.hpp"
 
 namespace hulltrack::velodyne {
 
 namespace {
-
-/// A turn slower than any model's lowest setting (300 rpm) tells nothing about how long a jump took.
-constexpr double kMinRpmToTimeJumps = 200.0;
-/// Azimuth may come back by this much when the rotor stands still, 0.01 deg.
-constexpr int kMaxBackwardStep = 10;
-/// A step this far from the packet's median is still the same rotation, 0.01 deg.
-constexpr int kMinStepTolerance = 3;
 
 /// A direction in the plane.
 struct Heading {
@@ -51,11 +45,6 @@ ReturnMode return_mode_of(std::uint8_t code) {
 
 std::uint16_t block_azimuth(Bytes payload, std::size_t block) {
   return read_le16(payload, block * kBlockBytes + 2);
-}
-
-int forward_step(int from, int to) {
-  const int step = (to - from + kCentidegrees) % kCentidegrees;
-  return step >= kCentidegrees - kMaxBackwardStep ? step - kCentidegrees : step;
 }
 
 std::string product_name(std::uint32_t code) {
@@ -128,10 +117,9 @@ DecodeOutcome VelodyneDecoder::decode(std::span<const std::uint8_t> payload, Dec
     if (has_next && rotation.jump[g]) out.cut_azimuth = centidegrees_to_rad(rotation.azimuth[g]);
     const int step = has_next ? rotation.step[g] : rotation.advance[g];
     const Nanoseconds span = has_next ? rotation.time[g + 1] - rotation.time[g] : model_.block_period;
-    if (out.zero_crossing || step <= 0 || rotation.azimuth[g] + step < kCentidegrees) continue;
-    const double share = static_cast<double>(kCentidegrees - rotation.azimuth[g]) / step;
-    const Nanoseconds passed(std::llround(share * static_cast<double>(span.count())));
-    const Nanoseconds crossing = rotation.time[g] + passed - rotation.duration;
+    const auto passed = rotor::time_to_zero(rotation.azimuth[g], step, span);
+    if (!passed || out.zero_crossing) continue;
+    const Nanoseconds crossing = rotation.time[g] + *passed - rotation.duration;
     if (crossing <= Nanoseconds::zero()) out.zero_crossing = crossing;
   }
   for (std::size_t block = 0; block < kBlocks; ++block) emit_block(payload, block, rotation, out);
@@ -168,7 +156,7 @@ DecodeOutcome VelodyneDecoder::read_rotation(std::span<const std::uint8_t> paylo
 
   int turned = 0;
   for (std::size_t g = 0; g + 1 < r.groups; ++g) {
-    r.step[g] = forward_step(r.azimuth[g], r.azimuth[g + 1]);
+    r.step[g] = rotor::forward_step(r.azimuth[g], r.azimuth[g + 1]);
     turned += r.step[g];
   }
   const int median = r.median_step();
@@ -177,26 +165,16 @@ DecodeOutcome VelodyneDecoder::read_rotation(std::span<const std::uint8_t> paylo
     return {DecodeStatus::bad_azimuth, 0, static_cast<std::uint32_t>(std::max(turned, median))};
   }
 
-  int fitting_steps = 0;
-  int fitting_sum = 0;
-  const int tolerance = std::max(kMinStepTolerance, median / 2);
-  for (std::size_t g = 0; g + 1 < r.groups; ++g) {
-    r.jump[g] = std::abs(r.step[g] - median) > tolerance;
-    if (r.jump[g]) continue;
-    ++fitting_steps;
-    fitting_sum += r.step[g];
-  }
-  r.rate = fitting_steps > 0 ? std::max(0.0, static_cast<double>(fitting_sum) / fitting_steps) : 0.0;
+  r.rate = rotor::fit_steps(std::span(r.step).first(r.groups - 1), median, r.jump).value_or(0.0);
 
-  const bool rate_known = r.rate * rpm_per_step >= kMinRpmToTimeJumps;
+  const bool rate_known = r.rate * rpm_per_step >= rotor::kMinRpmToTimeJumps;
   for (std::size_t g = 0; g < r.groups; ++g) {
     const bool unusable = g + 1 == r.groups || r.jump[g];
     const int before = g > 0 ? r.advance[g - 1] : median;
     r.advance[g] = unusable ? before : r.step[g];
     if (g + 1 == r.groups) break;
-    const double periods = r.jump[g] && rate_known ? std::max(1.0, r.step[g] / r.rate) : 1.0;
     r.time[g + 1] =
-        r.time[g] + Nanoseconds(std::llround(periods * static_cast<double>(model_.block_period.count())));
+        r.time[g] + rotor::duration_of(r.step[g], r.jump[g], r.rate, rate_known, model_.block_period);
   }
   r.duration = r.time[r.groups - 1] + model_.slots.back().time;
   return {};
