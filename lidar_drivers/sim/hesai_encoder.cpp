@@ -8,6 +8,7 @@
 #include "core/geometry/se3.hpp"
 #include "lidar_drivers/bytes.hpp"
 #include "lidar_drivers/hesai/hesai_clock.hpp"
+#include "lidar_drivers/sim/rotating.hpp"
 
 namespace hulltrack::sim {
 
@@ -27,11 +28,6 @@ std::uint8_t mode_code(ReturnMode mode) {
   return hesai::kModeStrongest;
 }
 
-std::uint16_t distance_code(double range, double unit) {
-  const double code = std::round(range / unit);
-  return code >= 1.0 && code <= 65535.0 ? static_cast<std::uint16_t>(code) : std::uint16_t{0};
-}
-
 /// Of the lasers in wire order the first has to fire first and the last last.
 bool fires_in_wire_order(const hesai::ModelTable& model) {
   return model.firing[0] == model.first_pulse() && model.firing[model.lasers - 1] == model.last_pulse();
@@ -43,13 +39,7 @@ Result<HesaiEncoder> HesaiEncoder::create(std::string_view model, const LidarEnc
   const hesai::ModelTable* table = hesai::find_model(model);
   if (table == nullptr) return Error{"no Hesai model is called \"" + std::string(model) + "\""};
   if (!fires_in_wire_order(*table)) return Error{"there is no encoder for \"" + std::string(model) + "\""};
-  if (!(config.rpm > 0.0 && config.rpm <= hesai::kMaxRpm)) {
-    return Error{"a Hesai cannot turn at " + std::to_string(config.rpm) + " rpm; allowed is (0, " +
-                 std::to_string(hesai::kMaxRpm) + "]"};
-  }
-  const ReturnMode mode = config.return_mode;
-  if (mode != ReturnMode::strongest && mode != ReturnMode::last && mode != ReturnMode::dual)
-    return Error{"a Hesai's return mode is strongest, last or dual"};
+  if (auto problem = settings_problem("Hesai", hesai::kMaxRpm, config)) return *problem;
   return HesaiEncoder(*table, config);
 }
 
@@ -70,12 +60,6 @@ Nanoseconds HesaiEncoder::packet_duration() const {
   return packet_interval() - model_->block_period + model_->last_pulse() - model_->first_pulse();
 }
 
-double HesaiEncoder::rotor_azimuth(Nanoseconds time) const {
-  const double turned = degrees(config_.start_azimuth) + config_.rpm * 6.0 * to_seconds(time);
-  const double within = std::fmod(turned, 360.0);
-  return within < 0.0 ? within + 360.0 : within;
-}
-
 Nanoseconds HesaiEncoder::reference(std::uint64_t packet, std::size_t group) const {
   return first_firing(packet) + static_cast<int>(group) * model_->block_period - model_->first_pulse();
 }
@@ -85,10 +69,9 @@ void HesaiEncoder::firings(std::uint64_t packet, std::vector<LaserFiring>& out) 
   for (std::size_t group = 0; group < groups(); ++group) {
     for (std::size_t k = 0; k < model_->lasers; ++k) {
       const Nanoseconds time = reference(packet, group) + model_->firing[k];
-      const double azimuth = radians(rotor_azimuth(time) + model_->nominal[k].azimuth_deg);
+      const double azimuth = radians(rotor_azimuth(config_, time) + model_->nominal[k].azimuth_deg);
       const double elevation = radians(model_->nominal[k].elevation_deg);
-      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
-                                      -std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const Eigen::Vector3d direction = direction_of(azimuth, elevation);
       out.push_back(
           {time, azimuth, elevation, Eigen::Vector3d::Zero(), direction, static_cast<std::uint8_t>(k)});
     }
@@ -103,7 +86,7 @@ std::vector<std::uint8_t> HesaiEncoder::encode(std::uint64_t packet,
   write_header(bytes);
   for (std::size_t block = 0; block < model_->blocks; ++block) {
     const std::size_t group = block / echoes;
-    const double azimuth = rotor_azimuth(reference(packet, group));
+    const double azimuth = rotor_azimuth(config_, reference(packet, group));
     const auto code = static_cast<int>(std::lround(azimuth * 100.0)) % hesai::kCentidegrees;
     write_le16(bytes, model_->azimuth_offset(block), static_cast<std::uint16_t>(code));
     for (std::size_t k = 0; k < model_->lasers; ++k) {

@@ -33,9 +33,8 @@ class HesaiEncoder final : public LidarEncoder {
 
  private:
   HesaiEncoder(const hesai::ModelTable& model, const LidarEncoderConfig& config);
-  [[nodiscard]] std::size_t returns() const;                   // a firing
-  [[nodiscard]] std::size_t groups() const;                    // firings of each laser a datagram
-  [[nodiscard]] double rotor_azimuth(Nanoseconds time) const;  // deg, [0, 360)
+  [[nodiscard]] std::size_t returns() const;  // a firing
+  [[nodiscard]] std::size_t groups() const;   // firings of each laser a datagram
   /// What the azimuth of a group's blocks belongs to.
   [[nodiscard]] Nanoseconds reference(std::uint64_t packet, std::size_t group) const;
   void write_header(std::span<std::uint8_t> bytes) const;

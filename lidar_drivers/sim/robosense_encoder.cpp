@@ -8,6 +8,7 @@
 
 #include "core/geometry/se3.hpp"
 #include "lidar_drivers/bytes.hpp"
+#include "lidar_drivers/sim/rotating.hpp"
 
 namespace hulltrack::sim {
 
@@ -19,11 +20,6 @@ std::uint8_t mode_code(ReturnMode mode, Family family) {
   if (mode == ReturnMode::dual) return 0;
   if (family == Family::helios) return mode == ReturnMode::last ? 5 : 4;
   return mode == ReturnMode::last ? 2 : 1;
-}
-
-std::uint16_t distance_code(double range, double unit) {
-  const double code = std::round(range / unit);
-  return code >= 1.0 && code <= 65535.0 ? static_cast<std::uint16_t>(code) : std::uint16_t{0};
 }
 
 void write_clock(std::span<std::uint8_t> clock, Nanoseconds time, Family family) {
@@ -63,13 +59,7 @@ Result<RobosenseEncoder> RobosenseEncoder::create(std::string_view model, const 
   if (table == nullptr) return Error{"no RoboSense model is called \"" + std::string(model) + "\""};
   if (!std::ranges::is_sorted(table->pulse.begin(), table->pulse.begin() + static_cast<long>(table->lasers)))
     return Error{"there is no encoder for " + std::string(model) + ": its wire order is not that of firing"};
-  if (!(config.rpm > 0.0 && config.rpm <= robosense::kMaxRpm)) {
-    return Error{"a RoboSense cannot turn at " + std::to_string(config.rpm) + " rpm; allowed is (0, " +
-                 std::to_string(robosense::kMaxRpm) + "]"};
-  }
-  const ReturnMode mode = config.return_mode;
-  if (mode != ReturnMode::strongest && mode != ReturnMode::last && mode != ReturnMode::dual)
-    return Error{"a RoboSense's return mode is strongest, last or dual"};
+  if (auto problem = settings_problem("RoboSense", robosense::kMaxRpm, config)) return *problem;
   return RobosenseEncoder(*table, config);
 }
 
@@ -101,23 +91,16 @@ Nanoseconds RobosenseEncoder::packet_duration() const {
   return packet_interval() - model_->period + model_->pulse[model_->lasers - 1];
 }
 
-double RobosenseEncoder::rotor_azimuth(Nanoseconds time) const {
-  const double turned = degrees(config_.start_azimuth) + config_.rpm * 6.0 * to_seconds(time);
-  const double within = std::fmod(turned, 360.0);
-  return within < 0.0 ? within + 360.0 : within;
-}
-
 void RobosenseEncoder::firings(std::uint64_t packet, std::vector<LaserFiring>& out) const {
   out.clear();
   for (std::size_t i = 0; i < firings_per_packet(); ++i) {
     const std::size_t laser = i % model_->lasers;
     const Nanoseconds time =
         first_firing(packet) + static_cast<int>(i / model_->lasers) * model_->period + model_->pulse[laser];
-    const double rotor = radians(rotor_azimuth(time));
+    const double rotor = radians(rotor_azimuth(config_, time));
     const double azimuth = rotor + radians(angles_[laser].azimuth_deg);
     const double elevation = radians(angles_[laser].elevation_deg);
-    const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
-                                    -std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    const Eigen::Vector3d direction = direction_of(azimuth, elevation);
     const Eigen::Vector3d lens(model_->lens_forward * std::cos(rotor),
                                -model_->lens_forward * std::sin(rotor), model_->lens_up);
     out.push_back({time, azimuth, elevation, lens, direction, static_cast<std::uint8_t>(laser)});
@@ -135,7 +118,7 @@ std::vector<std::uint8_t> RobosenseEncoder::encode(std::uint64_t packet,
               model_->family);
   for (std::size_t block = 0; block < robosense::kBlocks; ++block) {
     const int first = static_cast<int>(block) / blocks_per_firing() * firings_per_block();
-    const double turned = rotor_azimuth(first_firing(packet) + first * model_->period);
+    const double turned = rotor_azimuth(config_, first_firing(packet) + first * model_->period);
     const auto azimuth = static_cast<int>(std::lround(turned * 100.0)) % robosense::kCentidegrees;
     const std::size_t base = robosense::kHeaderBytes + block * robosense::kBlockBytes;
     write_be16(bytes, base, robosense::kBlockFlag);

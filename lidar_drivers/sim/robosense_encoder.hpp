@@ -37,7 +37,6 @@ class RobosenseEncoder final : public LidarEncoder {
   [[nodiscard]] bool dual() const { return config_.return_mode == ReturnMode::dual; }
   [[nodiscard]] int blocks_per_firing() const;  // 2: a pair of blocks holds one firing's two echoes
   [[nodiscard]] int firings_per_block() const;  // of all lasers
-  [[nodiscard]] double rotor_azimuth(Nanoseconds time) const;  // deg, [0, 360)
 
   const robosense::ModelTable* model_;
   LidarEncoderConfig config_;

@@ -6,6 +6,7 @@
 
 #include "core/geometry/se3.hpp"
 #include "lidar_drivers/bytes.hpp"
+#include "lidar_drivers/sim/rotating.hpp"
 
 namespace hulltrack::sim {
 
@@ -23,23 +24,12 @@ std::uint8_t mode_code(ReturnMode mode) {
   return velodyne::kModeStrongest;
 }
 
-std::uint16_t distance_code(double range, double unit) {
-  const double code = std::round(range / unit);
-  return code >= 1.0 && code <= 65535.0 ? static_cast<std::uint16_t>(code) : std::uint16_t{0};
-}
-
 }  // namespace
 
 Result<VelodyneEncoder> VelodyneEncoder::create(std::string_view model, const LidarEncoderConfig& config) {
   const velodyne::ModelTable* table = velodyne::find_model(model);
   if (table == nullptr) return Error{"no Velodyne model is called \"" + std::string(model) + "\""};
-  if (!(config.rpm > 0.0 && config.rpm <= velodyne::kMaxRpm)) {
-    return Error{"a Velodyne cannot turn at " + std::to_string(config.rpm) + " rpm; allowed is (0, " +
-                 std::to_string(velodyne::kMaxRpm) + "]"};
-  }
-  const ReturnMode mode = config.return_mode;
-  if (mode != ReturnMode::strongest && mode != ReturnMode::last && mode != ReturnMode::dual)
-    return Error{"a Velodyne's return mode is strongest, last or dual"};
+  if (auto problem = settings_problem("Velodyne", velodyne::kMaxRpm, config)) return *problem;
   return VelodyneEncoder(*table, config);
 }
 
@@ -61,22 +51,15 @@ Nanoseconds VelodyneEncoder::packet_duration() const {
   return (groups() - 1) * model_->block_period + model_->slots.back().time;
 }
 
-double VelodyneEncoder::rotor_azimuth(Nanoseconds time) const {
-  const double turned = degrees(config_.start_azimuth) + config_.rpm * 6.0 * to_seconds(time);
-  const double within = std::fmod(turned, 360.0);
-  return within < 0.0 ? within + 360.0 : within;
-}
-
 void VelodyneEncoder::firings(std::uint64_t packet, std::vector<LaserFiring>& out) const {
   out.clear();
   for (int group = 0; group < groups(); ++group) {
     const Nanoseconds block = first_firing(packet) + group * model_->block_period;
     for (const velodyne::Slot& slot : model_->slots) {
       const Nanoseconds time = block + slot.time;
-      const double azimuth = radians(rotor_azimuth(time) + slot.azimuth_offset_deg);
+      const double azimuth = radians(rotor_azimuth(config_, time) + slot.azimuth_offset_deg);
       const double elevation = radians(slot.elevation_deg);
-      const Eigen::Vector3d direction(std::cos(elevation) * std::cos(azimuth),
-                                      -std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+      const Eigen::Vector3d direction = direction_of(azimuth, elevation);
       out.push_back({time, azimuth, elevation, {0.0, 0.0, slot.vertical_offset_m}, direction, slot.channel});
     }
   }
@@ -90,7 +73,8 @@ std::vector<std::uint8_t> VelodyneEncoder::encode(std::uint64_t packet,
   for (std::size_t block = 0; block < velodyne::kBlocks; ++block) {
     const std::size_t group = dual ? block / 2 : block;
     const Nanoseconds time = first_firing(packet) + static_cast<int>(group) * model_->block_period;
-    const auto azimuth = static_cast<int>(std::lround(rotor_azimuth(time) * 100.0)) % velodyne::kCentidegrees;
+    const auto azimuth =
+        static_cast<int>(std::lround(rotor_azimuth(config_, time) * 100.0)) % velodyne::kCentidegrees;
     const std::size_t base = block * velodyne::kBlockBytes;
     write_le16(bytes, base, velodyne::kBlockFlag);
     write_le16(bytes, base + 2, static_cast<std::uint16_t>(azimuth));

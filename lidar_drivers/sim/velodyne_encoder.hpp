@@ -29,8 +29,7 @@ class VelodyneEncoder final : public LidarEncoder {
 
  private:
   VelodyneEncoder(const velodyne::ModelTable& model, const LidarEncoderConfig& config);
-  [[nodiscard]] double rotor_azimuth(Nanoseconds time) const;  // deg, [0, 360)
-  [[nodiscard]] int groups() const;                            // firing groups a datagram: 12, dual 6
+  [[nodiscard]] int groups() const;  // firing groups a datagram: 12, dual 6
 
   const velodyne::ModelTable* model_;
   LidarEncoderConfig config_;
