@@ -131,10 +131,12 @@ std::uint32_t FrameAssembler::place_in(Frame& frame, std::size_t lidar, const De
   const auto to_middle = static_cast<std::int32_t>((last - middle).count());
   const std::int64_t from_dt = (from - last).count();
   const std::int64_t to_dt = (to - last).count();
+  LidarFrameCounters& counters = scan.lidars[lidar];
   const auto begin = static_cast<std::uint32_t>(scan.points.size());
+  const std::size_t full = begin + kMaxLidarPoints - counters.points;
   for (const LidarPoint& point : packet.points) {
     if (point.dt_ns < from_dt || point.dt_ns > to_dt) continue;
-    if (scan.points.size() >= kMaxScanPoints) {
+    if (scan.points.size() >= full) {
       ++over_limit;
       continue;
     }
@@ -146,7 +148,6 @@ std::uint32_t FrameAssembler::place_in(Frame& frame, std::size_t lidar, const De
   scan.first_firing = frame.used ? std::min(scan.first_firing, from) : from;
   scan.last_firing = frame.used ? std::max(scan.last_firing, to) : to;
   frame.used = true;
-  LidarFrameCounters& counters = scan.lidars[lidar];
   ++counters.packets;
   counters.points += count;
   counters.points_over_limit += over_limit;

@@ -36,7 +36,7 @@ struct LidarStatus {
   std::uint64_t packets_duplicate = 0;  // the same bytes again: dropped
   std::uint64_t packets_out_of_order = 0;
   std::uint64_t points_late = 0;        // their frame had been handed out: dropped
-  std::uint64_t points_over_limit = 0;  // beyond kMaxScanPoints: dropped
+  std::uint64_t points_over_limit = 0;  // beyond kMaxLidarPoints: dropped
   std::uint64_t return_mode_changes = 0;
   std::uint64_t clock_restarts = 0;  // the sensor's clock jumped: reboot, or time synchronisation
   ReturnMode return_mode = ReturnMode::unknown;

@@ -22,7 +22,7 @@ inline void require(bool condition) {
 
 inline void check(const Scan& scan) {
   std::size_t next = 0;
-  require(scan.points.size() <= kMaxScanPoints);
+  require(scan.points.size() <= kMaxLidarPoints * scan.lidars.size());
   for (const ScanSegment& segment : scan.segments) {
     require(segment.first == next && segment.count > 0 && segment.lidar < 2);
     next += segment.count;

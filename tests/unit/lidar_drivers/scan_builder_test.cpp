@@ -349,14 +349,19 @@ TEST(ScanBuilder, DatagramsWithoutAnyReturnStillMakeAFrame) {
   EXPECT_EQ(scan.lidars[0].packets, 76U);
 }
 
-TEST(ScanBuilder, AFloodIsCappedAndCounted) {
-  const auto stream = test::make_stream({.model = "velodyne_vlp32c", .packets = 3000});
-  auto builder = builder_for({lidar("velodyne_vlp32c")}, Framing::period, 0.1);
-  const auto scans = build(builder, stream.packets);
-  ASSERT_EQ(scans.size(), 1U);
-  EXPECT_EQ(scans[0].points.size(), kMaxScanPoints);
-  EXPECT_EQ(builder.status(0).points_over_limit, stream.returns.size() - kMaxScanPoints);
-  EXPECT_EQ(scans[0].lidars[0].points_over_limit, stream.returns.size() - kMaxScanPoints);
+TEST(ScanBuilder, AFloodIsCappedAndCountedAndTakesNothingFromAnotherLidar) {
+  const auto flood = test::make_stream({.model = "velodyne_vlp32c", .packets = 3000});
+  const auto other = test::make_stream({.packets = 10});
+  auto builder = builder_for({lidar("velodyne_vlp32c"), lidar()}, Framing::period, 0.1);
+  for (const auto& packet : flood.packets) ASSERT_TRUE(builder.add(0, packet.datagram()).ok());
+  for (const auto& packet : other.packets) ASSERT_TRUE(builder.add(1, packet.datagram()).ok());
+  builder.finish();
+  Scan scan;
+  ASSERT_TRUE(builder.take(scan));
+  EXPECT_EQ(scan.points.size(), kMaxLidarPoints + other.returns.size());
+  EXPECT_EQ(scan.lidars[1].points, other.returns.size());
+  EXPECT_EQ(builder.status(0).points_over_limit, flood.returns.size() - kMaxLidarPoints);
+  EXPECT_EQ(scan.lidars[0].points_over_limit, flood.returns.size() - kMaxLidarPoints);
 }
 
 TEST(ScanBuilder, FramesThatNobodyTakesAreBounded) {
