@@ -179,7 +179,7 @@ HealthVerdict idle(HealthMemory& memory, State state, Faults faults, std::string
 
 HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const Evidence& e) {
   Findings findings;
-  findings.faults = e.plc_faults;
+  findings.faults = e.standing;
   check_registration(limits, e, findings);
   if (e.registered) {
     check_distances(limits, e, findings);
@@ -193,11 +193,15 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
     check_speed(limits, memory, findings);
   }
 
-  memory.good_frames = findings.state == State::tracking ? memory.good_frames + 1 : 0;
+  const bool a_lidar_is_silent = (e.standing & fault::lidar_silent) != 0;
+  memory.good_frames = findings.state == State::tracking && !a_lidar_is_silent ? memory.good_frames + 1 : 0;
   if (e.registered && e.integrity.undecided) {
     findings.add(State::degraded, 0, e.integrity.reason);
   }
   check_uniqueness(memory, e.search, findings);
+  if (a_lidar_is_silent) {  // what the others see may well follow the hull, but not steer by
+    findings.add(State::degraded, fault::lidar_silent, "a LiDAR is silent");
+  }
   if (findings.state == State::tracking && memory.state != State::tracking &&
       memory.good_frames < limits.health.recover_frames) {
     findings.add(State::degraded, 0,
@@ -227,9 +231,9 @@ std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, 
   }
   HealthVerdict verdict;
   if (e.hold) {
-    verdict = idle(memory, State::held, e.plc_faults, "held by the PLC's command");
-  } else if ((e.plc_faults & fault::plc_stale) != 0 || !e.bracketed) {
-    const auto faults = static_cast<Faults>(e.plc_faults | fault::plc_stale);
+    verdict = idle(memory, State::held, e.standing, "held by the PLC's command");
+  } else if ((e.standing & fault::plc_stale) != 0 || !e.bracketed) {
+    const auto faults = static_cast<Faults>(e.standing | fault::plc_stale);
     verdict = idle(memory, State::fault, faults, "no joint samples bracket the scan");
   } else {
     verdict = judge_pose(limits, memory, e);

@@ -40,7 +40,7 @@ struct Evidence {
   MeasurementTime time{};  // middle of the scan
   bool hold = false;
   bool reacquire = false;   // rising edge
-  Faults plc_faults = 0;    // plc_stale, plc_value
+  Faults standing = 0;      // plc_stale, plc_value, lidar_silent, clock
   bool bracketed = false;   // joint samples bracket every packet
   bool registered = false;  // a pose was found; what follows speaks of it
   bool converged = false;

@@ -87,7 +87,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   evidence.time = result.time;
   evidence.hold = inputs.hold;
   evidence.reacquire = inputs.reacquire;
-  evidence.plc_faults = inputs.plc_faults;
+  evidence.standing = inputs.standing;
   if (inputs.reacquire) {
     integrity.forget();
   }
@@ -96,7 +96,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   evidence.bracketed = mid.lookup == JointHistory::Lookup::ok &&
                        (scan.segments.empty() ||
                         joints.covers(scan.first_firing, scan.last_firing) == JointHistory::Lookup::ok);
-  if (evidence.bracketed && !inputs.hold && (inputs.plc_faults & fault::plc_stale) == 0) {
+  if (evidence.bracketed && !inputs.hold && (inputs.standing & fault::plc_stale) == 0) {
     scan_filter.run(scan, joints, drift(), filtered);
     const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);

@@ -46,7 +46,7 @@ struct FrameDone {
 struct Exchange {
   TripleBuffer<Scan> scans;       // rx produces, track consumes
   JointFeed joints;               // plc pushes, track drains
-  Mailbox<LidarView> lidars;      // rx puts, plc gets
+  Mailbox<LidarView> lidars;      // rx puts, plc and track get
   Mailbox<PlcView> plc;           // plc puts, track gets
   Mailbox<FrameDone> frame;       // track puts, plc gets
   Mailbox<WriteBlock> registers;  // plc puts, main gets

@@ -52,8 +52,8 @@ void LidarWatch::update_silence(const LidarEvidence& evidence, SteadyTime now) {
       silent_, now,
       [&] {
         return format_text(
-            "%s: no usable packet on UDP port %u for %.1f s, so no new pose. Check its power, its cable, "
-            "that it sends to this computer and that a firewall lets it through",
+            "%s: no usable packet on UDP port %u for %.1f s; health is 0 until it is back. Check its power, "
+            "its cable, that it sends to this computer and that a firewall lets it through",
             name_.c_str(), config_.port, to_seconds(now - heard));
       },
       [&](Nanoseconds lasted) {

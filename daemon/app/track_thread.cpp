@@ -74,7 +74,8 @@ void TrackThread::process(const Scan& scan) {
 FrameInputs TrackThread::inputs() {
   const PlcView plc = exchange_.plc.get();
   const bool reacquire = plc.reacquire_edges != std::exchange(reacquire_edges_, plc.reacquire_edges);
-  return {.hold = plc.hold, .reacquire = reacquire, .plc_faults = plc.standing};
+  const auto standing = static_cast<Faults>(plc.standing | exchange_.lidars.get().standing);
+  return {.hold = plc.hold, .reacquire = reacquire, .standing = standing};
 }
 
 }  // namespace hulltrack

@@ -54,6 +54,7 @@ RecordingPlayer::RecordingPlayer(const std::filesystem::path& folder, const Conf
     : pcap_name_((folder / "lidar.pcap").string()),
       plc_name_((folder / "plc.csv").string()),
       lidars_(config.lidars),
+      silent_frames_(config.lidars.size()),
       plc_(config.plc),
       source_(std::move(source)),
       router_(std::move(router)),
@@ -73,7 +74,9 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
       plc_.heartbeat_timeout > Nanoseconds{0} && scan.end - last_news_ > plc_.heartbeat_timeout;
   inputs_.hold = latch_.hold();
   inputs_.reacquire = latch_.take_reacquire();
-  inputs_.plc_faults = static_cast<Faults>(value_fault_ | (frozen ? fault::plc_stale : 0));
+  inputs_.standing = value_fault_;
+  inputs_.standing |= frozen ? fault::plc_stale : Faults{0};
+  inputs_.standing |= look_for_silence(scan.end) ? fault::lidar_silent : Faults{0};
   return true;
 }
 
@@ -112,6 +115,32 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
     }
   }
   return true;
+}
+
+/// As the service's watch of a LiDAR does it, once a frame.
+bool RecordingPlayer::look_for_silence(MeasurementTime now) {
+  bool any = false;
+  for (std::size_t i = 0; i < lidars_.size(); ++i) {
+    const LidarStatus status = builder_.status(i);
+    const bool silent =
+        now - (status.packets > 0 ? status.last_received : first_datagram_) > lidars_[i].timeout;
+    silent_frames_[i] += silent ? 1 : 0;
+    any = any || silent;
+  }
+  return any;
+}
+
+std::string RecordingPlayer::explain_silence() const {
+  std::string text;
+  for (std::size_t i = 0; i < lidars_.size(); ++i) {
+    if (silent_frames_[i] == 0) {
+      continue;
+    }
+    text += format_text("silent      LiDAR %s for longer than %lld ms in %s\n", lidars_[i].name.c_str(),
+                        static_cast<long long>(lidars_[i].timeout / std::chrono::milliseconds(1)),
+                        counted(silent_frames_[i], "frame").c_str());
+  }
+  return text;
 }
 
 /// Why the capture, read to its end, holds no frame at all; empty if it does.

@@ -39,6 +39,9 @@ class RecordingPlayer {
   [[nodiscard]] const JointHistory& joints() const { return joints_; }
   [[nodiscard]] const FrameInputs& inputs() const { return inputs_; }
 
+  /// Which LiDARs fell silent in the frames so far, a line each for the terminal; empty if none did.
+  [[nodiscard]] std::string explain_silence() const;
+
   /// How much of the recording's time has been played, 0..1.
   [[nodiscard]] double share() const;
 
@@ -46,6 +49,7 @@ class RecordingPlayer {
   RecordingPlayer(const std::filesystem::path& folder, const Config& config, PcapSource&& source,
                   DatagramRouter&& router, ScanBuilder&& builder, std::vector<PlcCsvRow>&& rows);
   [[nodiscard]] Result<bool> read_until_frame(Scan& scan);
+  bool look_for_silence(MeasurementTime now);
   [[nodiscard]] std::string explain_no_frame() const;
   [[nodiscard]] std::string explain_no_joints() const;
   /// When the joints of `row` were measured.
@@ -55,6 +59,7 @@ class RecordingPlayer {
 
   std::string pcap_name_, plc_name_;
   std::vector<LidarConfig> lidars_;
+  std::vector<std::uint64_t> silent_frames_;  // one a LiDAR
   PlcConfig plc_;
   PcapSource source_;
   DatagramRouter router_;

@@ -174,6 +174,40 @@ TEST_F(TrackingSession, ASilentLidarTakesTheHealthAndGivesItBack) {
   EXPECT_GE(log.count("packets again"), 1U);
 }
 
+TEST_F(SessionTest, OneOfTwoLidarsUnpluggedIsNamedAndNoPoseIsReleasedUntilItIsBack) {
+  const std::uint16_t second_port = free_port(SOCK_DGRAM);
+  RoomLidar second(second_port);
+  Prepared prepared = room_service(lidar_port, plc_port);
+  prepared.config.lidars.push_back(prepared.config.lidars.front());
+  prepared.config.lidars[1].name = "boom2";
+  prepared.config.lidars[1].port = second_port;
+  session = std::make_unique<Session>(prepared, log, fail);
+  if (!wait_for(healthy)) {
+    return judge_missing_health(*plc);
+  }
+  const auto silent = fault_after([&] { second.mute(true); }, fault::lidar_silent);
+  ASSERT_TRUE(silent);
+  const std::size_t unplugged = plc->blocks().size();
+  EXPECT_FALSE(silent->health);
+  EXPECT_EQ(silent->state, State::degraded) << "the other one goes on";
+  const auto fresh = [&](const WriteBlock& block) { return block.q1_m != silent->q1_m; };
+  for (int frames = 0; frames < 10; ++frames) {
+    ASSERT_TRUE(wait_for(fresh)) << "its frames are still registered";
+  }
+  const std::size_t plugged_in = plc->blocks().size();
+  second.mute(false);
+  ASSERT_TRUE(wait_for(healthy));
+  const auto blocks = plc->blocks();
+  for (std::size_t i = unplugged; i < plugged_in; ++i) {
+    EXPECT_FALSE(blocks[i].health) << i;
+    EXPECT_EQ(blocks[i].state, State::degraded) << i;
+  }
+  session.reset();
+  EXPECT_EQ(log.count("LiDAR boom2: no usable packet"), 1U);
+  EXPECT_EQ(log.count("LiDAR boom2: packets again"), 1U);
+  EXPECT_EQ(log.count("LiDAR boom: no usable packet"), 0U);
+}
+
 TEST_F(TrackingSession, AForeignSenderIsNamedAndChangesNothing) {
   RoomLidar foreign(lidar_port);
   ASSERT_TRUE(fault_after([&] { foreign.send_from(INADDR_LOOPBACK + 1); }, fault::foreign_packets));

@@ -94,13 +94,15 @@ const std::vector<Case>& cases() {
        State::degraded, fault::implausible},
       {"joints do not bracket", [](Evidence& e) { e.bracketed = e.registered = false; }, State::fault,
        fault::plc_stale},
-      {"PLC stale", [](Evidence& e) { e.plc_faults = fault::plc_stale; }, State::fault, fault::plc_stale},
+      {"PLC stale", [](Evidence& e) { e.standing = fault::plc_stale; }, State::fault, fault::plc_stale},
       {"PLC value and no bracket",
        [](Evidence& e) {
-         e.plc_faults = fault::plc_value;
+         e.standing = fault::plc_value;
          e.bracketed = e.registered = false;
        },
        State::fault, fault::plc_stale | fault::plc_value},
+      {"a LiDAR of several silent", [](Evidence& e) { e.standing = fault::lidar_silent; }, State::degraded,
+       fault::lidar_silent},
       {"held", [](Evidence& e) { e.hold = true; }, State::held, 0},
   };
   return all;
@@ -428,7 +430,7 @@ TEST(Health, RollingAsWavesDoKeepsHealth) {
 
 TEST(Health, RefusedPlcValueBetweenGoodOnesIsReportedAndCostsNothing) {
   Machine machine = tracking_machine();
-  const HealthVerdict verdict = machine.step([](Evidence& e) { e.plc_faults = fault::plc_value; });
+  const HealthVerdict verdict = machine.step([](Evidence& e) { e.standing = fault::plc_value; });
   EXPECT_EQ(verdict.state, State::tracking);
   EXPECT_EQ(verdict.faults, fault::plc_value);
 }
