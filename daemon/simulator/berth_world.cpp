@@ -11,7 +11,7 @@ Eigen::Matrix<float, 3, 4> as_affine(const Pose& T) { return T.matrix().topRows<
 }  // namespace
 
 BerthWorld::BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const ShapeChange& change,
-                       const LoaderMotion& loader, const HullMotion& hull, const Pose& mount,
+                       const LoaderMotion& loader, const HullMotion& hull,
                        const std::optional<Passage>& crane)
     : boom_(boom_mesh()),
       berth_(berth_mesh()),
@@ -20,22 +20,19 @@ BerthWorld::BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const Sha
       passage_(crane.value_or(Passage{})),
       change_(&change),
       loader_(&loader),
-      hull_(&hull),
-      mount_(mount) {
+      hull_(&hull) {
   for (const TriangleMesh& mesh : hull_meshes_H) hulls_.emplace_back(mesh);
   if (crane) crane_.emplace(crane_mesh());
 }
 
-Pose BerthWorld::T_W_L(double t) const { return lidar_pose(loader_machine(), loader_->at(t), mount_); }
-
-BerthWorld::Placement BerthWorld::placement(double t) const {
+BerthWorld::Placement BerthWorld::placement(const Pose& mount, double t) const {
   const Joints joints = loader_->at(t);
-  const Pose T_W_L = lidar_pose(loader_machine(), joints, mount_);
+  const Pose T_W_L = lidar_pose(loader_machine(), joints, mount);
   const Pose T_G_L = Eigen::Translation3d(-joints.d_x, 0.0, 0.0) * T_W_L;
   const Pose T_water_L = Eigen::Translation3d(0.0, 0.0, hull_->ebb(t)) * T_W_L;
   const double driven = passage_.from + run_distance(passage_.run, t);
   Placement L_from;
-  L_from[kBoom] = as_affine(mount_);
+  L_from[kBoom] = as_affine(mount);
   L_from[kHull] = as_affine(hull_->T_W_H(t).inverse() * T_W_L);
   L_from[kBerth] = as_affine(T_W_L);
   L_from[kPortal] = as_affine(T_G_L);
@@ -44,8 +41,8 @@ BerthWorld::Placement BerthWorld::placement(double t) const {
   return L_from;
 }
 
-BerthWorld::Sweep BerthWorld::sweep(double begin, double end) const {
-  return {begin, end, placement(begin), placement(end)};
+BerthWorld::Sweep BerthWorld::sweep(const Pose& mount, double begin, double end) const {
+  return {begin, end, placement(mount, begin), placement(mount, end)};
 }
 
 BerthWorld::Affine BerthWorld::between(const Sweep& sweep, double t, std::size_t body) {

@@ -1,4 +1,4 @@
-// What does a ray leaving the LiDAR at time t meet? The berth with bodies that move on their own: berth in W,
+// What does a ray leaving a LiDAR at time t meet? The berth with bodies that move on their own: berth in W,
 // water in W at the tide's level, hull in H, portal in G, boom in B, a crane that drives past - each where it
 // is at that very moment, the hull in the shape that it has by then.
 //
@@ -38,17 +38,14 @@ class BerthWorld {
   /// `hull_meshes_H`: one for each of the shapes of `change`, in the ship's place of when the map was made.
   /// Motions and change must outlive the world.
   BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const ShapeChange& change,
-             const LoaderMotion& loader, const HullMotion& hull, const Pose& mount,
-             const std::optional<Passage>& crane);
+             const LoaderMotion& loader, const HullMotion& hull, const std::optional<Passage>& crane);
 
-  [[nodiscard]] Sweep sweep(double begin, double end) const;
+  /// Of a LiDAR with T_lidar = `mount`.
+  [[nodiscard]] Sweep sweep(const Pose& mount, double begin, double end) const;
 
   /// First surface of any body along a ray in L at time t within the sweep.
   [[nodiscard]] std::optional<RayHit> cast(const Sweep& sweep, double t, const Point& origin_L,
                                            const Point& direction_L, float max_range) const;
-
-  /// T_W_L at time t by the true joints.
-  [[nodiscard]] Pose T_W_L(double t) const;
 
   /// A ray's origin and direction in W, at time t within the sweep.
   [[nodiscard]] static std::pair<Point, Point> ray_W(const Sweep& sweep, double t, const Point& origin_L,
@@ -60,7 +57,7 @@ class BerthWorld {
   enum Body : std::size_t { kBoom, kHull, kBerth, kPortal, kWater, kCrane };
 
   [[nodiscard]] static Affine between(const Sweep& sweep, double t, std::size_t body);
-  [[nodiscard]] Placement placement(double t) const;
+  [[nodiscard]] Placement placement(const Pose& mount, double t) const;
   [[nodiscard]] const RayScene* scene(std::size_t body, std::size_t shape) const;
   /// Is there no water at a point of the river's level because the hull is below it (inside a hold)?
   [[nodiscard]] bool displaced(const Sweep& sweep, double t, std::size_t shape, const Point& p_L) const;
@@ -72,7 +69,6 @@ class BerthWorld {
   const ShapeChange* change_;
   const LoaderMotion* loader_;
   const HullMotion* hull_;
-  Pose mount_;
 };
 
 }  // namespace hulltrack

@@ -36,6 +36,7 @@ class DustPlume {
   DustPlume(double density, const LoaderMotion& loader, std::uint64_t seed)
       : density_(density), loader_(&loader), seed_(seed) {}
 
+  [[nodiscard]] bool any() const { return density_ > 0.0; }
   [[nodiscard]] Now at(double t) const;
 
   /// Where along a ray (unit direction) dust stops it, if it does within `reach`.

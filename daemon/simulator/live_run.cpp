@@ -74,8 +74,12 @@ void wait_for_service(const LivePlc& plc, const LiveHooks& hooks) {
 }  // namespace
 
 Result<void> run_live(const SimulatedBerth& berth, const LiveOptions& options, const LiveHooks& hooks) {
-  auto lidar = UdpSender::create(options.lidar_host, options.lidar_port);
-  if (!lidar) return lidar.error();
+  std::vector<UdpSender> lidars;
+  for (std::size_t i = 0; i < berth.lidars().size(); ++i) {
+    auto lidar = UdpSender::create(options.lidar_host, static_cast<std::uint16_t>(options.lidar_port + i));
+    if (!lidar) return lidar.error();
+    lidars.push_back(std::move(*lidar));
+  }
   std::unique_ptr<LivePlc> plc;
   try {
     if (options.with_plc) plc = std::make_unique<LivePlc>(berth, options);
@@ -96,20 +100,20 @@ Result<void> run_live(const SimulatedBerth& berth, const LiveOptions& options, c
   Nanoseconds next_line = std::chrono::seconds(1);
   const LiveJudge nobody(berth);
   const auto show = [&](Nanoseconds time) { hooks.show(plc ? plc->line(time) : nobody.ship_line(time)); };
-  const std::vector<std::uint8_t> about_itself = berth.information().datagram;
-  InformationTimes telling;
-  std::uint64_t number = 0;
-  for (auto packet = packets.take(); packet; packet = packets.take(), ++number) {
-    const Nanoseconds due = berth.sent(number);
-    std::this_thread::sleep_until(start + due);
+  const auto keep_going_until = [&](Nanoseconds time) {
+    for (; next_line <= time; next_line += std::chrono::seconds(1)) {
+      std::this_thread::sleep_until(start + next_line);
+      show(next_line);
+      if (!hooks.keep_going()) return false;
+    }
+    std::this_thread::sleep_until(start + time);
+    return true;
+  };
+  for (auto packet = packets.take(); packet; packet = packets.take()) {
+    const Nanoseconds due = packet->departure.time;
+    if (!keep_going_until(due)) break;
     latest = std::max(latest, now() - start - due);
-    if (!about_itself.empty() && telling.due(due))
-      if (auto sent = lidar->send(about_itself); !sent) return sent;
-    if (auto sent = lidar->send(*packet); !sent) return sent;
-    if (due < next_line) continue;
-    show(next_line);
-    if (!hooks.keep_going()) break;
-    next_line += std::chrono::seconds(1);
+    if (auto sent = lidars[packet->departure.lidar].send(packet->bytes); !sent) return sent;
   }
   const Nanoseconds end = now() - start;
   if (plc)

@@ -1,4 +1,5 @@
-// A simulation in real time on the network: LiDAR datagrams over UDP, the loader's PLC as a Modbus server.
+// A simulation in real time on the network: the LiDARs' datagrams over UDP, the loader's PLC as a Modbus
+// server.
 //
 // Datagrams leave when their last firing is due; the PLC latches its encoders every PLC cycle. Whatever the
 // service writes is compared with the truth. Blocks until the run is over or `keep_going` says no; asked
@@ -16,8 +17,8 @@ namespace hulltrack {
 
 struct LiveOptions {
   std::string lidar_host = "127.0.0.1";
-  std::uint16_t lidar_port = 2368;
-  bool with_plc = true;  // false: somebody's own PLC serves the service
+  std::uint16_t lidar_port = 2368;  // of the first LiDAR, the next ones' follow
+  bool with_plc = true;             // false: somebody's own PLC serves the service
   std::string plc_bind = "127.0.0.1";
   std::uint16_t plc_port = 1502;  // 0 = any free one
   bool wait_for_service = false;  // the run begins when the service first reads the PLC

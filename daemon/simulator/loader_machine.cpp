@@ -1,6 +1,7 @@
 #include "daemon/simulator/loader_machine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hulltrack {
@@ -97,6 +98,19 @@ TriangleMesh portal_mesh() {
   add_cylinder(mesh, {0.0F, -8.0F, 10.0F}, {0.0F, -8.0F, 17.0F}, 1.8F, 24, Material::white_paint);
   add_box(mesh, {2.0F, -11.0F, 10.0F}, {4.5F, -8.5F, 12.6F}, Material::steel);  // electrical house
   return mesh;
+}
+
+std::span<const Pose> lidar_brackets() {
+  // The spin axis is turned 30 deg out of the boom's direction and dips 15 deg, so that the fan crosses the
+  // ship askew: decks, coaming sides and coaming ends are all in view, whichever way the boom is slewed. x of
+  // L points down. Over the whole working range the smallest eigenvalue of a VLP-16's point-to-plane normal
+  // matrix stays above 90 points' worth in translation (spin axis level and 60 deg out of the boom: 2);
+  // hulltrack(1) has the figures. The other side is the mirror image: the two fans cross.
+  static const std::array<Pose, 2> brackets = {
+      pose_from_xyz_rpy_deg({18.4, 1.9, -1.6}, {0.0, 105.0, -30.0}),
+      pose_from_xyz_rpy_deg({18.4, -1.9, -1.6}, {0.0, 105.0, 30.0}),
+  };
+  return brackets;
 }
 
 std::vector<Box> own_machine_boxes(const Pose& T_lidar) {

@@ -5,6 +5,7 @@
 // Constants and pure functions; nothing fails.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/geometry/box.hpp"
@@ -34,6 +35,9 @@ namespace hulltrack {
 
 /// Portal and tower, in G.
 [[nodiscard]] TriangleMesh portal_mesh();
+
+/// T_lidar of the places for LiDARs at the boom's end, on either side of the chute's head.
+[[nodiscard]] std::span<const Pose> lidar_brackets();
 
 /// Boxes in L around everything of boom_mesh, for `exclude`; T_lidar = mount in B.
 [[nodiscard]] std::vector<Box> own_machine_boxes(const Pose& T_lidar);

@@ -10,8 +10,9 @@ PacketsAhead::PacketsAhead(const SimulatedBerth& berth)
 void PacketsAhead::cast_all(const std::stop_token& stop) {
   std::exception_ptr failure;
   try {
-    for (std::uint64_t number = 0; number < berth_->packets(); ++number) {
-      SimulatedBerth::Packet packet = berth_->packet(number);
+    Departures departures(*berth_);
+    while (const auto departure = departures.next()) {
+      Ready packet{*departure, bytes_of(*berth_, *departure)};
       std::unique_lock lock(mutex_);
       if (!changed_.wait(lock, stop, [&] { return ready_.size() < kReady; })) return;
       ready_.push_back(std::move(packet));
@@ -31,14 +32,14 @@ void PacketsAhead::wait_ready(std::size_t count) {
   changed_.wait(lock, [&] { return finished_ || ready_.size() >= count; });
 }
 
-std::optional<SimulatedBerth::Packet> PacketsAhead::take() {
+std::optional<PacketsAhead::Ready> PacketsAhead::take() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return finished_ || !ready_.empty(); });
   if (ready_.empty()) {
     if (failure_) std::rethrow_exception(failure_);
     return std::nullopt;
   }
-  SimulatedBerth::Packet packet = std::move(ready_.front());
+  Ready packet = std::move(ready_.front());
   ready_.pop_front();
   changed_.notify_all();
   return packet;

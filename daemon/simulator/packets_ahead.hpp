@@ -1,8 +1,8 @@
 // Casts datagrams ahead of the moment when they are due, on a thread of its own.
 //
-// take() hands them out in order, exactly as SimulatedBerth::packet() gives them. A bounded number is kept
-// ready, so that a busy moment of the host does not delay the next datagram. An exception of the casting
-// thread is thrown again by take(). Thread rule: one taker; the destructor ends the thread.
+// take() hands them out in the order in which they leave. A bounded number is kept ready, so that a busy
+// moment of the host does not delay the next datagram. An exception of the casting thread is thrown again by
+// take(). Thread rule: one taker; the destructor ends the thread.
 #pragma once
 
 #include <condition_variable>
@@ -13,13 +13,18 @@
 #include <optional>
 #include <thread>
 
-#include "daemon/simulator/simulated_berth.hpp"
+#include "daemon/simulator/departures.hpp"
 
 namespace hulltrack {
 
 class PacketsAhead {
  public:
-  static constexpr std::size_t kReady = 3000;  // 2 to 4 s, 3.6 MB
+  static constexpr std::size_t kReady = 3000;  // 1 to 4 s, some 10 MB
+
+  struct Ready {
+    Departure departure;
+    SimulatedBerth::Packet bytes;
+  };
 
   /// `berth` must outlive this.
   explicit PacketsAhead(const SimulatedBerth& berth);
@@ -28,7 +33,7 @@ class PacketsAhead {
   void wait_ready(std::size_t count);
 
   /// The next datagram, waiting for it if need be; nothing at the end of the run.
-  [[nodiscard]] std::optional<SimulatedBerth::Packet> take();
+  [[nodiscard]] std::optional<Ready> take();
 
  private:
   void cast_all(const std::stop_token& stop);
@@ -36,7 +41,7 @@ class PacketsAhead {
   const SimulatedBerth* berth_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<SimulatedBerth::Packet> ready_;
+  std::deque<Ready> ready_;
   bool finished_ = false;
   std::exception_ptr failure_;
   std::jthread thread_;  // last: starts when everything else is there, ends before it goes

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/io/pcd_writer.hpp"
+#include "daemon/simulator/departures.hpp"
 #include "daemon/simulator/parallel.hpp"
 #include "daemon/simulator/random.hpp"
 #include "daemon/simulator/site_config.hpp"
@@ -93,41 +94,77 @@ Result<void> write_text(const fs::path& file, const std::string& text) {
   return {};
 }
 
-/// The sensor as delivered: 192.168.1.201 broadcasts.
-constexpr UdpEndpoints broadcast_to(std::uint16_t port) {
-  return {
-      .source_ip = 0xC0A801C9U, .source_port = port, .destination_ip = 0xFFFFFFFFU, .destination_port = port};
+/// Sensors as delivered broadcast.
+UdpEndpoints broadcast(const LidarConfig& lidar, std::size_t index, bool information) {
+  const std::uint16_t port = information ? lidar.information_port : lidar.port;
+  return {.source_ip = recorded_address(index),
+          .source_port = port,
+          .destination_ip = 0xFFFFFFFFU,
+          .destination_port = port};
 }
 
+struct Cast {
+  SimulatedBerth::Packet bytes;
+  std::size_t frame = 0;    // in which it was sent
+  std::size_t returns = 0;  // of these lie farther than a window's cover
+};
+
+Cast cast(const SimulatedBerth& berth, const Departure& departure) {
+  constexpr double kBeyondWindow = 1.0;  // m
+  const SimulatedLidar& lidar = berth.lidars()[departure.lidar];
+  const auto frame = static_cast<std::size_t>(departure.time / SimulatedBerth::kFramePeriod);
+  if (!departure.packet) return {bytes_of(berth, departure), frame};
+  const std::vector<sim::LaserReturn> returns = lidar.returns(*departure.packet);
+  const auto seen = std::ranges::count_if(
+      returns, [](const sim::LaserReturn& echo) { return echo.range >= kBeyondWindow; });
+  return {lidar.encoder().encode(*departure.packet, returns), frame, static_cast<std::size_t>(seen)};
+}
+
+/// `returns_a_frame` gets the number of returns in each frame.
 Result<void> write_capture(const fs::path& file, const SimulatedBerth& berth,
-                           const ProgressCallback& progress) {
+                           std::vector<std::size_t>& returns_a_frame, const ProgressCallback& progress) {
   auto writer = PcapWriter::create(file);
   if (!writer) return writer.error();
-  const LidarConfig lidar = berth.lidar_config();
-  const std::vector<std::uint8_t> about_itself = berth.information().datagram;
-  InformationTimes telling;
-  constexpr std::uint64_t kBatch = 1024;
-  std::vector<SimulatedBerth::Packet> batch;
-  for (std::uint64_t first = 0; first < berth.packets(); first += kBatch) {
-    batch.resize(std::min(kBatch, berth.packets() - first));
-    for_each_index(batch.size(), [&](std::size_t i) { batch[i] = berth.packet(first + i); });
+  returns_a_frame.assign(static_cast<std::size_t>(berth.frames()), 0);
+  std::vector<LidarConfig> lidars;
+  for (std::size_t i = 0; i < berth.lidars().size(); ++i) lidars.push_back(berth.lidar_config(i));
+  constexpr std::size_t kBatch = 1024;
+  std::vector<Cast> batch;
+  Departures departures(berth);
+  for (auto sent = departures.next(kBatch); !sent.empty(); sent = departures.next(kBatch)) {
+    batch.resize(sent.size());
+    for_each_index(batch.size(), [&](std::size_t i) { batch[i] = cast(berth, sent[i]); });
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      const MeasurementTime time = SimulatedBerth::kEpoch + berth.sent(first + i);
-      if (!about_itself.empty() && telling.due(berth.sent(first + i)))
-        if (auto done = writer->write(time, broadcast_to(lidar.information_port), about_itself); !done)
-          return done;
-      if (auto done = writer->write(time, broadcast_to(lidar.port), batch[i]); !done) return done;
+      const UdpEndpoints ends = broadcast(lidars[sent[i].lidar], sent[i].lidar, !sent[i].packet);
+      const MeasurementTime time = SimulatedBerth::kEpoch + sent[i].time;
+      if (auto done = writer->write(time, ends, batch[i].bytes); !done) return done;
+      returns_a_frame[batch[i].frame] += batch[i].returns;
     }
-    const double share = static_cast<double>(first + batch.size()) / static_cast<double>(berth.packets());
-    if (!progress(share)) return Error{"interrupted; nothing was left in the folder"};
+    const Nanoseconds end = berth.frames() * SimulatedBerth::kFramePeriod;
+    if (!progress(to_seconds(sent.back().time) / to_seconds(end)))
+      return Error{"interrupted; nothing was left in the folder"};
   }
   return writer->close();
 }
 
-Result<void> write_calibration(PendingFiles& files, const SimulatedBerth& berth) {
-  const sim::SensorInformation information = berth.information();
-  if (information.calibration_name.empty()) return {};
-  return write_text(files.add(information.calibration_name), information.calibration);
+std::string returns_table(const std::vector<std::size_t>& returns_a_frame) {
+  std::string text = "t_ns,returns\n";
+  for (std::size_t frame = 0; frame < returns_a_frame.size(); ++frame) {
+    const Nanoseconds middle = static_cast<Nanoseconds::rep>(frame) * SimulatedBerth::kFramePeriod +
+                               SimulatedBerth::kFramePeriod / 2;
+    text += std::to_string(utc_ns(middle)) + "," + std::to_string(returns_a_frame[frame]) + "\n";
+  }
+  return text;
+}
+
+Result<void> write_calibrations(PendingFiles& files, const SimulatedBerth& berth) {
+  for (std::size_t i = 0; i < berth.lidars().size(); ++i) {
+    const std::string name = berth.lidar_config(i).calibration;
+    if (name.empty()) continue;
+    if (auto done = write_text(files.add(name), berth.lidars()[i].information().calibration); !done)
+      return done;
+  }
+  return {};
 }
 
 }  // namespace
@@ -165,12 +202,14 @@ Result<void> write_recording(const SimulatedBerth& berth, const fs::path& folder
   if (auto ready = prepare_folder(folder, overwrite); !ready) return ready;
   PendingFiles files(folder);
   if (auto done = write_text(files.add("hulltrackd.toml"), site_config(berth, {})); !done) return done;
-  if (auto done = write_calibration(files, berth); !done) return done;
+  if (auto done = write_calibrations(files, berth); !done) return done;
   if (auto done = write_table(files.add("truth.csv"), recorded_truth(berth)); !done) return done;
   if (auto done = write_table(files.add("plc.csv"), recorded_plc(berth)); !done) return done;
   if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
   if (!progress(0.0)) return Error{"interrupted; nothing was left in the folder"};
-  if (auto done = write_capture(files.add("lidar.pcap"), berth, progress); !done) return done;
+  std::vector<std::size_t> returns;
+  if (auto done = write_capture(files.add("lidar.pcap"), berth, returns, progress); !done) return done;
+  if (auto done = write_text(files.add("returns.csv"), returns_table(returns)); !done) return done;
   return files.commit();
 }
 
@@ -179,7 +218,7 @@ Result<void> write_site_files(const SimulatedBerth& berth, const fs::path& folde
   if (auto ready = prepare_folder(folder, overwrite); !ready) return ready;
   PendingFiles files(folder);
   if (auto done = write_text(files.add("hulltrackd.toml"), config_text); !done) return done;
-  if (auto done = write_calibration(files, berth); !done) return done;
+  if (auto done = write_calibrations(files, berth); !done) return done;
   if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
   return files.commit();
 }

@@ -1,4 +1,5 @@
-// A simulation as a recording folder: lidar.pcap, plc.csv, truth.csv, hull.pcd, hulltrackd.toml.
+// A simulation as a recording folder: lidar.pcap, plc.csv, hull.pcd, hulltrackd.toml; of the truth, truth.csv
+// and returns.csv: how many returns from beyond a metre the LiDARs had in each frame, at its middle.
 //
 // Files are written under temporary names and renamed when all are complete, so that an interrupted run
 // leaves nothing that looks whole. The same simulation gives the same bytes. All cores work.

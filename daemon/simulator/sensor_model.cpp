@@ -7,21 +7,14 @@
 namespace hulltrack {
 namespace {
 
-/// On a bracket beside the chute's head. The spin axis is turned 30 deg out of the boom's direction and dips
-/// 15 deg, so that the fan crosses the ship askew: decks, coaming sides and coaming ends are all in view,
-/// whichever way the boom is slewed. x of L points down. Over the whole working range the smallest
-/// eigenvalue of a VLP-16's point-to-plane normal matrix stays above 90 points' worth in translation
-/// (spin axis level and 60 deg out of the boom: 2); hulltrack(1) has the figures.
-Pose bracket() { return pose_from_xyz_rpy_deg({18.4, 1.9, -1.6}, {0.0, 105.0, -30.0}); }
-
 std::vector<SensorTraits> make_sensors() {
   return {
-      {"velodyne_vlp16", bracket(), 1.0, 100.0, 50.0, 0.02, 0.0030, 0.0015},
-      {"velodyne_vlp32c", bracket(), 1.0, 120.0, 90.0, 0.02, 0.0030, 0.0015},
-      {"ouster_os", bracket(), 1.0, 120.0, 45.0, 0.02, 0.0031, 0.0031},
-      {"hesai_xt32", bracket(), 1.0, 120.0, 80.0, 0.01, 0.0010, 0.0026},
-      {"robosense_helios32", bracket(), 1.0, 120.0, 110.0, 0.02, 0.0017, 0.0035},
-      {"livox_mid360", bracket(), 1.0, 70.0, 40.0, 0.02, 0.0026, 0.0026},
+      {"velodyne_vlp16", 1.0, 100.0, 50.0, 0.02, 0.0030, 0.0015},
+      {"velodyne_vlp32c", 1.0, 120.0, 90.0, 0.02, 0.0030, 0.0015},
+      {"ouster_os", 1.0, 120.0, 45.0, 0.02, 0.0031, 0.0031},
+      {"hesai_xt32", 1.0, 120.0, 80.0, 0.01, 0.0010, 0.0026},
+      {"robosense_helios32", 1.0, 120.0, 110.0, 0.02, 0.0017, 0.0035},
+      {"livox_mid360", 1.0, 70.0, 40.0, 0.02, 0.0026, 0.0026},
   };
 }
 

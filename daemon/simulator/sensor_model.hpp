@@ -1,5 +1,5 @@
 // How does a LiDAR turn surfaces into returns? Range noise, beams that meet an edge, surfaces too dark, too
-// far or too oblique to be seen; and where on the boom each model is mounted.
+// far or too oblique to be seen.
 //
 // Metres and rad. Power falls with the square of the range and with the cosine of incidence (Lambert).
 // The beam is two rays: its middle and one drawn from its cross-section; where they meet surfaces a pulse
@@ -21,7 +21,6 @@ namespace hulltrack {
 
 struct SensorTraits {
   std::string_view model;     // of the model registry
-  Pose mount;                 // T_lidar: L -> B
   double min_range;           // m
   double max_range;           // m, what the configuration states
   double range_of_dark;       // a head-on surface of 10 % reflectivity is just seen at this range, m

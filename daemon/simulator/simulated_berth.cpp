@@ -7,7 +7,6 @@
 #include "daemon/simulator/loader_machine.hpp"
 #include "daemon/simulator/ship_mesh.hpp"
 #include "daemon/simulator/survey.hpp"
-#include "lidar_drivers/model_registry.hpp"
 #include "lidar_drivers/sim/encoder_registry.hpp"
 
 namespace hulltrack {
@@ -82,104 +81,57 @@ Result<std::unique_ptr<SimulatedBerth>> SimulatedBerth::create(const SimulationO
   const Scenario* scenario = find_scenario(options.scenario);
   if (scenario == nullptr)
     return Error{"there is no scenario \"" + options.scenario + "\"; there are " + known_names(false)};
-  const SensorTraits* sensor = find_sensor(options.lidar_model);
-  if (sensor == nullptr)
-    return Error{"cannot simulate LiDAR model \"" + options.lidar_model + "\"; can simulate " +
-                 known_names(true)};
+  const std::size_t brackets = lidar_brackets().size();
+  if (options.lidar_models.empty() || options.lidar_models.size() > brackets)
+    return Error{"the boom has brackets for 1 to " + std::to_string(brackets) + " LiDARs"};
+  if (options.unplugged && options.unplugged->lidar >= options.lidar_models.size())
+    return Error{"there is no LiDAR " + std::to_string(options.unplugged->lidar + 1) + " to unplug"};
   if (options.frames < 0 || options.frames > kMaxFrames)
     return Error{"the number of frames must lie between 1 and " + std::to_string(kMaxFrames)};
   if (options.leave_at && !under_way(scenario->motion))
     return Error{"the ship of scenario \"" + options.scenario +
                  "\" never gets under way: leave out the time to leave"};
-  RandomStream random(options.seed, 500);
-  sim::LidarEncoderConfig config;
-  config.return_mode = options.return_mode;
-  config.rpm = kRpm;
-  config.start_azimuth = random.uniform(0.0, 2.0 * std::numbers::pi);
-  config.utc = kEpoch.time_since_epoch();
-  auto encoder = sim::make_lidar_encoder(sensor->model, config);
-  if (!encoder) return encoder.error();
-  return std::unique_ptr<SimulatedBerth>(
-      new SimulatedBerth(options, *scenario, *sensor, std::move(*encoder)));
+  std::vector<Encoder> encoders;
+  for (const std::string& model : options.lidar_models) {
+    if (find_sensor(model) == nullptr)
+      return Error{"cannot simulate LiDAR model \"" + model + "\"; can simulate " + known_names(true)};
+    RandomStream random(options.seed, 500 + encoders.size());
+    sim::LidarEncoderConfig config;
+    config.return_mode = options.return_mode;
+    config.rpm = kRpm;
+    config.start_azimuth = random.uniform(0.0, 2.0 * std::numbers::pi);
+    config.utc = kEpoch.time_since_epoch();
+    auto encoder = sim::make_lidar_encoder(model, config);
+    if (!encoder) return encoder.error();
+    encoders.push_back(std::move(*encoder));
+  }
+  return std::unique_ptr<SimulatedBerth>(new SimulatedBerth(options, *scenario, std::move(encoders)));
 }
 
 SimulatedBerth::SimulatedBerth(const SimulationOptions& options, const Scenario& scenario,
-                               const SensorTraits& sensor, std::unique_ptr<const sim::LidarEncoder> encoder)
+                               std::vector<Encoder> encoders)
     : options_(options),
       scenario_(&scenario),
-      sensor_(&sensor),
       frames_(options.frames > 0 ? options.frames : scenario.frames),
-      encoder_(std::move(encoder)),
       loader_(loader_motion(options, scenario, to_seconds(frames_ * kFramePeriod))),
       hull_(hull_motion(options, scenario), reference_point_H(), options.seed),
       change_(shape_change(scenario)),
       plc_(loader_, options.encoders, options.seed, scenario.gateway),
       dust_(scenario.dust, loader_, options.seed),
       world_(std::make_unique<BerthWorld>(shaped_meshes_H(scenario.ship_at_berth, change_), change_, loader_,
-                                          hull_, sensor.mount, scenario.crane)) {
-  const Nanoseconds end = frames_ * kFramePeriod;
-  packets_ = static_cast<std::uint64_t>(end / encoder_->packet_interval());
-  while (packets_ > 0 && encoder_->last_firing(packets_ - 1) >= end) --packets_;
-}
-
-std::vector<sim::LaserReturn> SimulatedBerth::returns(std::uint64_t number) const {
-  std::vector<sim::LaserFiring> firings;
-  encoder_->firings(number, firings);
-  const auto sweep = world_->sweep(to_seconds(firings.front().time), to_seconds(firings.back().time));
-  const DustPlume::Now dust = dust_.at(sweep.begin);
-  RandomStream random(options_.seed, 600, number);
-  RandomStream air_random(options_.seed, 610, number);
-  std::vector<sim::LaserReturn> returns;
-  returns.reserve(2 * firings.size());
-  for (const sim::LaserFiring& firing : firings) {
-    const Echoes echoes = scenario_->cover.hides(to_seconds(firing.time), firing.azimuth)
-                              ? behind_cover(air_random)
-                              : through_air(sweep, dust, firing, surface(sweep, firing, random), air_random);
-    switch (options_.return_mode) {
-      case ReturnMode::dual:
-        returns.push_back(echoes.last);
-        returns.push_back(echoes.first);
-        break;
-      case ReturnMode::last:
-        returns.push_back(echoes.last);
-        break;
-      default:
-        returns.push_back(echoes.strongest());
-    }
+                                          hull_, scenario.crane)) {
+  static const WindowCover open;
+  for (std::size_t i = 0; i < encoders.size(); ++i) {
+    const WindowCover& cover = i == 0 ? scenario.cover : open;
+    lidars_.emplace_back(SimulatedLidar::Setup{i, find_sensor(options.lidar_models[i]),
+                                               std::move(encoders[i]), options.return_mode, options.seed},
+                         LidarSurroundings{*world_, dust_, scenario.weather, cover}, frames_ * kFramePeriod);
   }
-  return returns;
 }
 
-Echoes SimulatedBerth::surface(const BerthWorld::Sweep& sweep, const sim::LaserFiring& firing,
-                               RandomStream& random) const {
-  const Point origin = firing.origin.cast<float>();
-  const Point direction = firing.direction.cast<float>();
-  const double t = to_seconds(firing.time);
-  const auto reach = static_cast<float>(sensor_->max_range);
-  const auto middle = world_->cast(sweep, t, origin, direction, reach);
-  if (!middle) return {};
-  const auto other = world_->cast(sweep, t, origin, ray_within_beam(*sensor_, direction, random), reach);
-  return measure(*sensor_, *middle, other, random);
-}
-
-Echoes SimulatedBerth::through_air(const BerthWorld::Sweep& sweep, const DustPlume::Now& dust,
-                                   const sim::LaserFiring& firing, Echoes echoes,
-                                   RandomStream& random) const {
-  const double t = to_seconds(firing.time);
-  if (scenario_->dust > 0.0) {
-    const Point origin = firing.origin.cast<float>();
-    const auto [origin_W, direction_W] = BerthWorld::ray_W(sweep, t, origin, firing.direction.cast<float>());
-    const double reach = echoes.first.range > 0.0 ? echoes.first.range : sensor_->max_range;
-    if (const auto at = dust_.stops(dust, origin_W, direction_W, static_cast<float>(reach), random))
-      echoes = behind_particle(static_cast<double>(*at), echoes, random);
-  }
-  if (scenario_->weather.when.active(t))
-    echoes = through_weather(scenario_->weather, *sensor_, echoes, random);
-  return echoes;
-}
-
-SimulatedBerth::Packet SimulatedBerth::packet(std::uint64_t number) const {
-  return encoder_->encode(number, returns(number));
+bool SimulatedBerth::plugged_in(std::size_t lidar, Nanoseconds time) const {
+  const auto& unplugged = options_.unplugged;
+  return !unplugged || unplugged->lidar != lidar || !unplugged->when.active(to_seconds(time));
 }
 
 HullPose SimulatedBerth::truth(Nanoseconds time) const {
@@ -221,28 +173,18 @@ Cloud SimulatedBerth::map() const {
   for (double d_x = limits.travel.low - 12.0; d_x <= limits.travel.high + 12.0; d_x += kStationSpacing)
     for (const double slew : {limits.slew.low, limits.slew.high})
       for (const double luff : {limits.luff.low, limits.luff.high}) {
-        const Pose T_W_L = lidar_pose(loader_machine(), {d_x, slew, luff}, sensor_->mount);
+        const Pose T_W_L = lidar_pose(loader_machine(), {d_x, slew, luff}, lidar_brackets().front());
         stations_H.push_back(T_W_L.translation().cast<float>());
       }
   return survey(map_mesh_H(), stations_H, options_.seed);
 }
 
-LidarConfig SimulatedBerth::lidar_config() const {
-  LidarConfig config;
-  config.model = sensor_->model;
-  if (const LidarModel* model = find_lidar_model(config.model)) {
-    config.port = model->port;
-    config.information_port = model->information_port;
-  }
-  config.calibration = information().calibration_name;
-  config.mount = sensor_->mount;
-  config.min_range = sensor_->min_range;
-  config.max_range = sensor_->max_range;
-  for (const Box& box : own_machine_boxes(sensor_->mount)) {
-    const auto edge = [](float metres) { return std::round(static_cast<double>(metres) * 10.0) / 10.0; };
-    config.exclude.push_back({edge(box.min.x()), edge(box.min.y()), edge(box.min.z()), edge(box.max.x()),
-                              edge(box.max.y()), edge(box.max.z())});
-  }
+LidarConfig SimulatedBerth::lidar_config(std::size_t lidar) const {
+  LidarConfig config = lidars_[lidar].config();
+  config.name = "boom";
+  if (lidar == 0) return config;
+  config.name += std::to_string(lidar + 1);
+  if (!config.calibration.empty()) config.calibration = config.name + "_" + config.calibration;
   return config;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/simulator/departures.hpp"
 #include "daemon/simulator/parallel.hpp"
 #include "daemon/simulator/recording.hpp"
 #include "lidar_drivers/scan_builder.hpp"
@@ -10,28 +11,26 @@
 namespace hulltrack {
 
 Result<std::vector<Scan>> simulated_scans(const SimulatedBerth& berth, int first, int count) {
-  auto builder =
-      ScanBuilder::create({berth.lidar_config()}, {.framing = Framing::period, .frame_rate_hz = 10.0});
+  std::vector<LidarConfig> lidars;
+  for (std::size_t i = 0; i < berth.lidars().size(); ++i) lidars.push_back(berth.lidar_config(i));
+  auto builder = ScanBuilder::create(lidars, {.framing = Framing::period, .frame_rate_hz = 10.0});
   if (!builder) return builder.error();
-  if (const auto about_itself = berth.information().datagram; !about_itself.empty())
-    builder->add(0, {.bytes = about_itself, .received = SimulatedBerth::kEpoch});
-  const Nanoseconds begin = first * SimulatedBerth::kFramePeriod;
+  // The first datagram's first firing opens the grid of frames, so it must not be before the first frame.
+  Departures departures(berth, first * SimulatedBerth::kFramePeriod);
   const Nanoseconds end = (first + count) * SimulatedBerth::kFramePeriod;
-  // The first datagram's first firing opens the grid of frames, so it must not be before `begin`.
-  std::uint64_t packet = 0;
-  while (packet < berth.packets() && berth.encoder().first_firing(packet) < begin) ++packet;
-  std::uint64_t last = packet;
-  while (last < berth.packets() && berth.sent(last) < end) ++last;
+  std::vector<Departure> sent;
+  for (auto next = departures.next(); next && next->time < end; next = departures.next())
+    sent.push_back(*next);
 
-  std::vector<SimulatedBerth::Packet> packets(last - packet);
-  for_each_index(packets.size(), [&](std::size_t i) { packets[i] = berth.packet(packet + i); });
+  std::vector<SimulatedBerth::Packet> packets(sent.size());
+  for_each_index(packets.size(), [&](std::size_t i) { packets[i] = bytes_of(berth, sent[i]); });
   std::vector<Scan> scans;
   Scan scan;
   const auto collect = [&] {
     while (builder->take(scan)) scans.push_back(std::exchange(scan, Scan{}));
   };
   for (std::size_t i = 0; i < packets.size(); ++i) {
-    builder->add(0, {.bytes = packets[i], .received = SimulatedBerth::kEpoch + berth.sent(packet + i)});
+    builder->add(sent[i].lidar, {.bytes = packets[i], .received = SimulatedBerth::kEpoch + sent[i].time});
     collect();
   }
   builder->finish();

@@ -1,9 +1,11 @@
 #include "daemon/simulator/site_config.hpp"
 
+#include <array>
 #include <cstdarg>
 #include <cstdio>
 
 #include "daemon/simulator/loader_machine.hpp"
+#include "lidar_drivers/datagram_router.hpp"
 
 namespace hulltrack {
 namespace {
@@ -43,21 +45,36 @@ void put_machine(std::string& text) {
   text += "\n";
 }
 
-void put_lidar(std::string& text, const LidarConfig& lidar, std::uint16_t port) {
-  put(text, "[[lidar]]\nname = \"boom\"\nmodel = \"%s\"\nport = %u\n", lidar.model.c_str(),
-      unsigned{port == 0 ? lidar.port : port});
-  if (lidar.information_port != 0)
-    put(text, "information_port = %u\n", unsigned{port == 0 ? lidar.information_port : port});
+void put_lidar(std::string& text, const LidarConfig& lidar, const char* remark) {
+  put(text, "[[lidar]]\nname = \"%s\"\nmodel = \"%s\"\nport = %u\n", lidar.name.c_str(), lidar.model.c_str(),
+      unsigned{lidar.port});
+  if (lidar.information_port != 0) put(text, "information_port = %u\n", unsigned{lidar.information_port});
+  if (!lidar.source.empty()) put(text, "source = \"%s\"\n", lidar.source.c_str());
   if (!lidar.calibration.empty()) put(text, "calibration = \"%s\"\n", lidar.calibration.c_str());
-  text +=
-      "# Beside the chute's head. The fan hangs down, askew to the ship, so that decks, coaming sides and\n"
-      "# coaming ends are in view at every slew angle.\n";
+  text += remark;
   put_pose(text, "mount", lidar.mount);
   put(text, "min_range = %.1f\nmax_range = %.1f\n", lidar.min_range, lidar.max_range);
   text += "# Boom and chute, in slices that stay slim when turned into the LiDAR's axes.\nexclude = [\n";
   for (const auto& box : lidar.exclude)
     put(text, "  [%.1f, %.1f, %.1f, %.1f, %.1f, %.1f],\n", box[0], box[1], box[2], box[3], box[4], box[5]);
   text += "]\n\n";
+}
+
+constexpr std::array kBracketRemarks = {
+    "# Beside the chute's head. The fan hangs down, askew to the ship, so that decks, coaming sides and\n"
+    "# coaming ends are in view at every slew angle.\n",
+    "# On the chute's other side; its fan crosses the first one's.\n"};
+
+/// LiDAR `lidar` where `addresses` say.
+LidarConfig reachable(const SimulatedBerth& berth, std::size_t lidar, const SiteAddresses& addresses) {
+  LidarConfig config = berth.lidar_config(lidar);
+  if (addresses.lidar_port == 0) {
+    if (berth.lidars().size() > 1) config.source = format_ipv4(recorded_address(lidar));
+    return config;
+  }
+  config.port = static_cast<std::uint16_t>(addresses.lidar_port + lidar);
+  if (config.information_port != 0) config.information_port = config.port;
+  return config;
 }
 
 void put_box(std::string& text, const char* key, const Box& box, const char* remark) {
@@ -83,15 +100,19 @@ void put_hull(std::string& text, const HullConfig& hull) {
 }  // namespace
 
 std::string site_config(const SimulatedBerth& berth, const SiteAddresses& addresses) {
+  std::string models;
+  for (const SimulatedLidar& lidar : berth.lidars())
+    models += (models.empty() ? "" : " and ") + std::string(lidar.sensor().model);
   std::string text;
   put(text, "# Simulated berth: scenario %s, %s, seed %llu.\n", std::string(berth.scenario().name).c_str(),
-      std::string(berth.sensor().model).c_str(), static_cast<unsigned long long>(berth.options().seed));
+      models.c_str(), static_cast<unsigned long long>(berth.options().seed));
   text +=
       "# Written by `hulltrack simulate`; keys that are not here have their defaults, see "
       "hulltrackd.toml(5).\n\n";
   put_plc(text, addresses, berth.plc_model());
   put_machine(text);
-  put_lidar(text, berth.lidar_config(), addresses.lidar_port);
+  for (std::size_t i = 0; i < berth.lidars().size(); ++i)
+    put_lidar(text, reachable(berth, i, addresses), kBracketRemarks[i]);
   put_hull(text, berth.hull_config());
   return text;
 }

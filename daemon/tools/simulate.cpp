@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -28,6 +29,7 @@ struct SimulateOptions {
   std::string config_out;  // folder for the live service's map and configuration
   std::string lidar_to = "127.0.0.1:2368";
   std::string joints;  // d_x,slew,luff of a parked loader
+  std::string unplug;  // lidar@from[-to]
   bool no_plc = false;
   LiveOptions live;
 };
@@ -128,6 +130,25 @@ Joints parse_joints(const std::string& text) {
   return {d_x, radians(slew), radians(luff)};
 }
 
+/// "LIDAR@FROM" or "LIDAR@FROM-TO", LIDAR from 1 on, times in s.
+Unplugged parse_unplugged(const std::string& text) {
+  int lidar = 0;
+  double from = 0.0;
+  double to = std::numeric_limits<double>::infinity();
+  int read = 0;
+  const bool begun = std::sscanf(text.c_str(), "%d@%lf%n", &lidar, &from, &read) == 2;
+  const char* rest = text.c_str() + read;
+  int read_rest = 0;
+  const bool ends = begun && *rest == '-' && std::sscanf(rest + 1, "%lf%n", &to, &read_rest) == 1 &&
+                    rest[1 + read_rest] == '\0';
+  if (!begun || !(*rest == '\0' || ends) || lidar < 1 || !(from >= 0.0) || !std::isfinite(from) ||
+      !(to > from))
+    throw ToolError(kExitUsage, "--unplug " + text +
+                                    ": give the LiDAR's place in the list and the second when its cable is "
+                                    "pulled, 2@10, or also when it is back, 2@10-15");
+  return {static_cast<std::size_t>(lidar) - 1, {.first = from, .length = to - from}};
+}
+
 std::string simulated_models() {
   std::string names;
   for (const SensorTraits& sensor : simulated_sensors())
@@ -169,6 +190,7 @@ void run(SimulateOptions options) {
   if (options.seconds > 0.0)
     options.simulation.frames = static_cast<int>(std::lround(options.seconds * kFrameRate));
   if (!options.joints.empty()) options.simulation.parked = parse_joints(options.joints);
+  if (!options.unplug.empty()) options.simulation.unplugged = parse_unplugged(options.unplug);
   parse_lidar_target(options.lidar_to, options.live);
   options.live.with_plc = !options.no_plc;
   const auto berth = SimulatedBerth::create(options.simulation);
@@ -194,6 +216,8 @@ void add_simulate(CLI::App& app) {
       "  hulltrack simulate --scenario berth --seed 7 --out REC     a recording with ground truth\n"
       "  hulltrack simulate --scenario berth --config-out SITE      live; then: hulltrackd --config "
       "SITE/hulltrackd.toml\n"
+      "  hulltrack simulate --lidar hesai_xt32 --lidar hesai_xt32 --unplug 2@10 --out REC\n"
+      "                                                             two LiDARs, one is cut off after 10 s\n"
       "  hulltrack simulate --no-plc --joints 3.5,90,1              only the LiDAR; your PLC presents these "
       "joints");
   auto* list = command->add_flag("--list", options->list, "Name the scenarios and exit");
@@ -201,8 +225,13 @@ void add_simulate(CLI::App& app) {
       ->needs(list);
   command->add_option("--scenario", simulation.scenario, "What the ship does, see --list")
       ->capture_default_str();
-  command->add_option("--lidar", simulation.lidar_model, "LiDAR model: " + simulated_models())
+  command
+      ->add_option("--lidar", simulation.lidar_models,
+                   "LiDAR model; give it twice for one on either side of the chute: " + simulated_models())
       ->capture_default_str();
+  command->add_option(
+      "--unplug", options->unplug,
+      "LIDAR@FROM[-TO]: that LiDAR, 1 or 2, sends nothing from second FROM on (to second TO)");
   const std::map<std::string, ReturnMode> modes = {
       {"strongest", ReturnMode::strongest}, {"last", ReturnMode::last}, {"dual", ReturnMode::dual}};
   command
@@ -228,13 +257,16 @@ void add_simulate(CLI::App& app) {
   command->add_option("--joints", options->joints, "D_X,SLEW,LUFF in m and deg: the loader is parked there");
   command->add_flag("--force", options->overwrite, "Replace what is in the folder of --out or --config-out");
 
-  auto* out = command->add_option("--out", options->out,
-                                  "Folder for lidar.pcap, plc.csv, truth.csv, hull.pcd, hulltrackd.toml");
+  auto* out = command->add_option(
+      "--out", options->out,
+      "Folder for lidar.pcap, plc.csv, truth.csv, returns.csv, hull.pcd, hulltrackd.toml");
   command
       ->add_option("--config-out", options->config_out,
                    "Live: folder for the map and a matching hulltrackd.toml")
       ->excludes(out);
-  command->add_option("--lidar-to", options->lidar_to, "Live: ADDRESS:PORT that the datagrams go to")
+  command
+      ->add_option("--lidar-to", options->lidar_to,
+                   "Live: ADDRESS:PORT that the datagrams go to; those of a second LiDAR to the next port")
       ->capture_default_str()
       ->excludes(out);
   auto* port = command->add_option("--plc-port", live.plc_port, "Live: Modbus/TCP port of the loader's PLC")

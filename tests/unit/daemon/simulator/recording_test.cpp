@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "core/io/map_file.hpp"
 #include "daemon/config/read_config.hpp"
 #include "daemon/simulator/site_config.hpp"
+#include "lidar_drivers/datagram_router.hpp"
 #include "lidar_drivers/model_registry.hpp"
 #include "lidar_drivers/pcap_source.hpp"
 #include "lidar_drivers/scan_builder.hpp"
@@ -70,7 +72,7 @@ TEST_F(Recording, SameSeedSameBytesAndItsReplayHasItsFrames) {
 TEST_F(Recording, ConfigurationSaysWhatTheSimulationIs) {
   for (const SensorTraits& sensor : simulated_sensors()) {
     const auto simulated =
-        std::move(SimulatedBerth::create({.lidar_model = std::string(sensor.model), .frames = 1})).value();
+        std::move(SimulatedBerth::create({.lidar_models = {std::string(sensor.model)}, .frames = 1})).value();
     const std::string text =
         site_config(*simulated, {.plc_host = "127.0.0.1", .plc_port = 1234, .lidar_port = 2999});
     const ConfigReading reading = parse_config(text, folder_ / "hulltrackd.toml", lidar_models());
@@ -80,14 +82,40 @@ TEST_F(Recording, ConfigurationSaysWhatTheSimulationIs) {
     EXPECT_NEAR(to_seconds(config.plc.latency), simulated->plc_model().mean_latency(), 1e-9);
     ASSERT_EQ(config.lidars.size(), 1U);
     EXPECT_EQ(config.lidars[0].port, 2999);
-    EXPECT_TRUE(config.lidars[0].mount.isApprox(sensor.mount, 1e-9));
-    EXPECT_EQ(config.lidars[0].exclude, simulated->lidar_config().exclude);
+    EXPECT_TRUE(config.lidars[0].mount.isApprox(simulated->lidars()[0].mount(), 1e-9));
+    EXPECT_EQ(config.lidars[0].exclude, simulated->lidar_config(0).exclude);
     EXPECT_TRUE(
         config.tracker.hull.reference_point.isApprox(simulated->hull_config().reference_point, 1e-12));
     EXPECT_EQ(config.tracker.hull.envelope.min, simulated->hull_config().envelope.min);
     EXPECT_EQ(config.tracker.hull.envelope.max, simulated->hull_config().envelope.max);
     EXPECT_EQ(config.tracker.registration.method, RegistrationConfig{}.method);
   }
+}
+
+/// Two sensors as delivered send to the same port; only their addresses tell them apart.
+TEST_F(Recording, TwoLidarsOfOneModelAreToldApart) {
+  const auto simulated =
+      std::move(SimulatedBerth::create({.lidar_models = {"ouster_os", "ouster_os"}, .frames = 1})).value();
+  ASSERT_TRUE(write_recording(*simulated, folder_ / "rec", false, [](double) { return true; }));
+  const ConfigReading reading = read_config(folder_ / "rec" / "hulltrackd.toml", lidar_models());
+  ASSERT_TRUE(reading.problems.empty()) << reading.problems.front().message;
+  const std::vector<LidarConfig>& lidars = reading.config->lidars;
+  ASSERT_EQ(lidars.size(), 2U);
+  EXPECT_NE(lidars[0].calibration, lidars[1].calibration);
+  const auto router = DatagramRouter::create(lidars);
+  ASSERT_TRUE(router.ok());
+  auto source = PcapSource::open(folder_ / "rec" / "lidar.pcap");
+  ASSERT_TRUE(source.ok());
+  std::array<std::uint64_t, 2> packets{};
+  Datagram datagram;
+  for (auto more = source->next(datagram); more.ok() && *more; more = source->next(datagram)) {
+    const auto lidar = router->lidar_of(datagram);
+    ASSERT_TRUE(lidar);
+    EXPECT_EQ(simulated->lidars()[*lidar].packet(packets[*lidar]),
+              SimulatedBerth::Packet(datagram.bytes.begin(), datagram.bytes.end()));
+    ++packets[*lidar];
+  }
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(packets[i], simulated->lidars()[i].packets());
 }
 
 TEST_F(Recording, TruthRowsHoldEveryFrameMiddle) {

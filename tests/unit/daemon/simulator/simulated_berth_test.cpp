@@ -1,4 +1,5 @@
 #include "daemon/simulator/simulated_berth.hpp"
+#include "daemon/simulator/departures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,17 +53,20 @@ TEST(SimulatedBerth, SameSeedSameBytesOtherSeedOtherBytes) {
   const auto same = make({.seed = 3, .frames = 5});
   const auto other = make({.seed = 4, .frames = 5});
   // In another order: a datagram does not depend on which was asked for before.
-  EXPECT_EQ(one->packet(200), same->packet(200));
-  EXPECT_EQ(same->packet(17), one->packet(17));
-  EXPECT_NE(one->packet(17), other->packet(17));
-  EXPECT_NE(one->packet(17), one->packet(18));
+  const auto packet = [](const auto& berth, std::uint64_t number) {
+    return berth->lidars().front().packet(number);
+  };
+  EXPECT_EQ(packet(one, 200), packet(same, 200));
+  EXPECT_EQ(packet(same, 17), packet(one, 17));
+  EXPECT_NE(packet(one, 17), packet(other, 17));
+  EXPECT_NE(packet(one, 17), packet(one, 18));
 }
 
 TEST(SimulatedBerth, UnknownNamesAreErrorsThatNameTheChoice) {
   const auto no_scenario = SimulatedBerth::create({.scenario = "typhoon"});
   ASSERT_FALSE(no_scenario.ok());
   EXPECT_NE(no_scenario.error().message.find("wrong-ship"), std::string::npos);
-  const auto no_model = SimulatedBerth::create({.lidar_model = "sundial"});
+  const auto no_model = SimulatedBerth::create({.lidar_models = {"sundial"}});
   ASSERT_FALSE(no_model.ok());
   EXPECT_NE(no_model.error().message.find("velodyne_vlp32c"), std::string::npos);
 }
@@ -74,20 +78,21 @@ struct HullShare {
 
 /// How many returns of the last two frames lie on the ship when taken to H with the joints of their own
 /// firing time and the hull pose of `delay` later? At the end of `berth` the ship moves at 0.5 m/s.
-HullShare share_on_hull(const SimulatedBerth& berth, Nanoseconds delay) {
+HullShare share_on_hull(const SimulatedBerth& berth, std::size_t of, Nanoseconds delay) {
   const TriangleMesh hull = berth.hull_mesh_H();
   const Box region = *berth.hull_config().region;
-  const auto boxes = berth.lidar_config().exclude;
+  const auto boxes = berth.lidar_config(of).exclude;
   std::vector<sim::LaserFiring> firings;
   HullShare share;
-  for (std::uint64_t packet = berth.packets() - 150; packet < berth.packets(); packet += 3) {
-    const auto returns = berth.returns(packet);
-    berth.encoder().firings(packet, firings);
+  const SimulatedLidar& lidar = berth.lidars()[of];
+  for (std::uint64_t packet = lidar.packets() - 150; packet < lidar.packets(); packet += 3) {
+    const auto returns = lidar.returns(packet);
+    lidar.encoder().firings(packet, firings);
     for (std::size_t i = packet % 5; i < returns.size(); i += 5) {
       if (returns[i].range <= 0.0) continue;
       const Eigen::Vector3d p_L = firings[i].direction * returns[i].range + firings[i].origin;
       const Joints joints = berth.true_joints(firings[i].time);
-      const Eigen::Vector3d p_W = lidar_pose(loader_machine(), joints, berth.sensor().mount) * p_L;
+      const Eigen::Vector3d p_W = lidar_pose(loader_machine(), joints, lidar.mount()) * p_L;
       const bool own = std::any_of(boxes.begin(), boxes.end(), [&](const auto& b) {
         return Box{{static_cast<float>(b[0]), static_cast<float>(b[1]), static_cast<float>(b[2])},
                    {static_cast<float>(b[3]), static_cast<float>(b[4]), static_cast<float>(b[5])}}
@@ -104,28 +109,61 @@ HullShare share_on_hull(const SimulatedBerth& berth, Nanoseconds delay) {
 
 /// The law of the whole simulator.
 TEST(SimulatedBerth, EveryHullReturnLiesOnTheHullAtItsOwnFiringTime) {
-  for (const char* model : {"velodyne_vlp16", "velodyne_vlp32c"}) {
-    const auto berth = make({.scenario = "berth", .lidar_model = model, .seed = 11});
-    const HullShare own_time = share_on_hull(*berth, Nanoseconds{0});
-    EXPECT_GT(own_time.on, 400) << model;
-    EXPECT_LT(own_time.off, 0.03 * own_time.on) << model << ": more than noise and mixed pixels explain";
-    const HullShare half_a_second_late = share_on_hull(*berth, std::chrono::milliseconds(500));
-    EXPECT_GT(half_a_second_late.off, 2 * own_time.off + 20) << model << ": the check sees nothing";
+  const auto berth =
+      make({.scenario = "berth", .lidar_models = {"velodyne_vlp16", "velodyne_vlp32c"}, .seed = 11});
+  for (std::size_t lidar = 0; lidar < 2; ++lidar) {
+    const HullShare own_time = share_on_hull(*berth, lidar, Nanoseconds{0});
+    EXPECT_GT(own_time.on, 400) << lidar;
+    EXPECT_LT(own_time.off, 0.03 * own_time.on) << lidar << ": more than noise and mixed pixels explain";
+    const HullShare half_a_second_late = share_on_hull(*berth, lidar, std::chrono::milliseconds(500));
+    EXPECT_GT(half_a_second_late.off, 2 * own_time.off + 20) << lidar << ": the check sees nothing";
   }
+}
+
+TEST(SimulatedBerth, ASecondLidarChangesNothingOfTheFirst) {
+  const auto one = make({.seed = 3, .frames = 2});
+  const auto two = make({.lidar_models = {"velodyne_vlp16", "velodyne_vlp16"}, .seed = 3, .frames = 2});
+  EXPECT_EQ(one->lidars()[0].packet(40), two->lidars()[0].packet(40));
+  EXPECT_NE(two->lidars()[0].packet(40), two->lidars()[1].packet(40));
+  EXPECT_FALSE(SimulatedBerth::create({.lidar_models = {}}).ok());
+  EXPECT_FALSE(SimulatedBerth::create({.lidar_models = std::vector<std::string>(3, "velodyne_vlp16")}).ok());
+}
+
+TEST(SimulatedBerth, DatagramsLeaveInOrderOfTimeAndNoneOfAnUnpluggedLidar) {
+  SimulationOptions options{.lidar_models = {"velodyne_vlp16", "robosense_helios32"}, .frames = 20};
+  options.unplugged = Unplugged{.lidar = 1, .when = {.first = 0.5, .length = 1.0}};
+  const auto berth = make(options);
+  Departures departures(*berth);
+  std::array<std::uint64_t, 2> packets{};
+  int informations = 0;
+  Nanoseconds before{0};
+  while (const auto departure = departures.next()) {
+    EXPECT_LE(before, departure->time);
+    before = departure->time;
+    const double t = to_seconds(departure->time);
+    EXPECT_FALSE(departure->lidar == 1 && t >= 0.5 && t < 1.5) << t;
+    departure->packet ? void(++packets[departure->lidar]) : void(++informations);
+  }
+  EXPECT_EQ(packets[0], berth->lidars()[0].packets());
+  EXPECT_NEAR(static_cast<double>(packets[1]), 0.5 * static_cast<double>(berth->lidars()[1].packets()), 2.0);
+  EXPECT_EQ(informations, 2) << "once a second, and again as soon as its cable is back";
+  options.unplugged->lidar = 2;
+  EXPECT_FALSE(SimulatedBerth::create(options).ok());
 }
 
 TEST(SimulatedBerth, RangeNoiseHasItsStatedSpread) {
   // Against the noise-free distance of the same ray.
   const auto berth = make({.scenario = "static", .seed = 2, .frames = 3});
+  const SimulatedLidar& lidar = berth->lidars().front();
   std::vector<sim::LaserFiring> firings;
   double sum = 0.0;
   double squares = 0.0;
   int count = 0;
   for (std::uint64_t packet = 0; packet < 200; packet += 3) {
-    const auto returns = berth->returns(packet);
-    berth->encoder().firings(packet, firings);
-    const auto sweep =
-        berth->world().sweep(to_seconds(firings.front().time), to_seconds(firings.back().time));
+    const auto returns = lidar.returns(packet);
+    lidar.encoder().firings(packet, firings);
+    const auto sweep = berth->world().sweep(lidar.mount(), to_seconds(firings.front().time),
+                                            to_seconds(firings.back().time));
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const auto hit =
           berth->world().cast(sweep, to_seconds(firings[i].time), firings[i].origin.cast<float>(),
@@ -140,7 +178,7 @@ TEST(SimulatedBerth, RangeNoiseHasItsStatedSpread) {
   }
   ASSERT_GT(count, 3000);
   EXPECT_NEAR(sum / count, 0.0, 0.003);
-  EXPECT_NEAR(std::sqrt(squares / count), berth->sensor().range_sigma, 0.004);
+  EXPECT_NEAR(std::sqrt(squares / count), lidar.sensor().range_sigma, 0.004);
 }
 
 TEST(SimulatedBerth, MapLiesOnTheEmptyShipOnePointAVoxel) {
@@ -178,7 +216,7 @@ TEST(Survey, SeesOnlyWhatIsNotBehindSomethingAndIsTheSameForASeed) {
 
 TEST(SimulatedBerth, AFullRunHasItsFramesAndJointsBracketEveryOne) {
   for (const char* model : {"velodyne_vlp16", "velodyne_vlp32c"}) {
-    const auto berth = make({.lidar_model = model, .seed = 6, .frames = 7});
+    const auto berth = make({.lidar_models = {model}, .seed = 6, .frames = 7});
     const auto scans = simulated_scans(*berth, 0, 7);
     ASSERT_TRUE(scans.ok()) << scans.error().message;
     ASSERT_EQ(scans->size(), 7U) << model;
@@ -218,10 +256,12 @@ TEST(SimulatedBerth, TheShipLeavesWhenTold) {
 /// Height in W of the first surface straight below (x, y) at time t.
 RayHit below(const SimulatedBerth& berth, double t, double x, double y) {
   constexpr double kFrom = 60.0;  // m, above everything
-  const Pose T_L_W = berth.world().T_W_L(t).inverse();
+  const Pose& mount = berth.lidars().front().mount();
+  const Joints joints = berth.true_joints(nanoseconds_from_ms(t * 1e3));
+  const Pose T_L_W = lidar_pose(loader_machine(), joints, mount).inverse();
   const Eigen::Vector3d origin = T_L_W * Eigen::Vector3d(x, y, kFrom);
   const Eigen::Vector3d down = T_L_W.linear() * Eigen::Vector3d(0.0, 0.0, -1.0);
-  auto hit = berth.world().cast(berth.world().sweep(t, t + 0.001), t, origin.cast<float>(),
+  auto hit = berth.world().cast(berth.world().sweep(mount, t, t + 0.001), t, origin.cast<float>(),
                                 down.cast<float>(), 200.0F);
   EXPECT_TRUE(hit);
   hit->distance = static_cast<float>(kFrom) - hit->distance;

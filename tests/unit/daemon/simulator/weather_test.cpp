@@ -100,9 +100,9 @@ TEST(Weather, ABlockedHalfOfTheWindowIsEmptyAndTheOtherHalfIsAsBefore) {
   std::vector<sim::LaserFiring> firings;
   int open = 0;
   int seen = 0;
-  for (std::uint64_t packet = 0; packet < blocked->packets(); packet += 97) {
-    blocked->encoder().firings(packet, firings);
-    const auto returns = blocked->returns(packet);
+  for (std::uint64_t packet = 0; packet < blocked->lidars()[0].packets(); packet += 97) {
+    blocked->lidars()[0].encoder().firings(packet, firings);
+    const auto returns = blocked->lidars()[0].returns(packet);
     for (std::size_t i = 0; i < firings.size(); ++i) {
       const double t = to_seconds(firings[i].time);
       const double turn = std::fmod(firings[i].azimuth, 2.0 * std::numbers::pi);
@@ -118,7 +118,7 @@ TEST(Weather, ABlockedHalfOfTheWindowIsEmptyAndTheOtherHalfIsAsBefore) {
   EXPECT_GT(seen, open / 3);  // the upper part of the fan looks into the sky
   const auto uncovered = make({.scenario = "blind-short", .seed = 9});  // alike until 4 s
   for (std::uint64_t packet = 0; packet < 3000; packet += 301)
-    EXPECT_EQ(blocked->packet(packet), uncovered->packet(packet));
+    EXPECT_EQ(blocked->lidars()[0].packet(packet), uncovered->lidars()[0].packet(packet));
 }
 
 TEST(Weather, AFullyCoveredWindowShowsNothingFartherThanAMetre) {
@@ -136,7 +136,7 @@ TEST(Weather, SameSeedSameBytesInEveryWeather) {
     const auto one = make({.scenario = name, .seed = 3});
     const auto two = make({.scenario = name, .seed = 3});
     for (const std::uint64_t packet : {5000U, 4U})
-      EXPECT_EQ(one->packet(packet), two->packet(packet)) << name;
+      EXPECT_EQ(one->lidars()[0].packet(packet), two->lidars()[0].packet(packet)) << name;
   }
 }
 
@@ -145,12 +145,13 @@ TEST(Weather, DualReturnsHoldWhatStrongestAndLastAloneWould) {
   // random numbers are those of its datagram. What holds in spite of that are the laws of the pairs.
   const auto dual = make({.scenario = "rain", .seed = 4, .frames = 20, .return_mode = ReturnMode::dual});
   const auto single = make({.scenario = "rain", .seed = 4, .frames = 20});
-  EXPECT_NEAR(static_cast<double>(dual->packets()), 2.0 * static_cast<double>(single->packets()), 3.0);
+  EXPECT_NEAR(static_cast<double>(dual->lidars()[0].packets()),
+              2.0 * static_cast<double>(single->lidars()[0].packets()), 3.0);
   int drops = 0;
   int surface_behind = 0;
-  for (std::uint64_t packet = 0; packet < dual->packets(); packet += 31) {
-    const auto returns = dual->returns(packet);
-    ASSERT_EQ(returns.size(), 2 * dual->encoder().firings_per_packet());
+  for (std::uint64_t packet = 0; packet < dual->lidars()[0].packets(); packet += 31) {
+    const auto returns = dual->lidars()[0].returns(packet);
+    ASSERT_EQ(returns.size(), 2 * dual->lidars()[0].encoder().firings_per_packet());
     for (std::size_t i = 0; i < returns.size(); i += 2) {
       EXPECT_GE(returns[i].range, returns[i + 1].range);  // the last is never nearer than the other
       if (returns[i + 1].range == 0.0 || returns[i + 1].intensity > 3) continue;
