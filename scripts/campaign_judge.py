@@ -1,7 +1,7 @@
 """Judges one replay of a simulated recording against the truth, and sums up many of them.
 
 Everything that decides whether a frame could have been healthy, or must not have been, comes from truth.csv and
-the LiDAR's datagrams, never from what the tracker said. Metres, seconds, degrees where a name says so, radians
+returns.csv of the simulation, never from what the tracker said. Metres, seconds, degrees where a name says so, radians
 otherwise; error twists are [rotation; translation of the reference point], found minus true, in W.
 """
 import csv
@@ -19,17 +19,8 @@ COME_BACK_S = 2.0  # a shorter rest of a recording does not tell whether health 
 # 95 % of chi-square with six degrees of freedom lies between these quantiles of 2.5 and 97.5 %.
 NEES_BAND = (1.24, 14.45)
 BLIND_SHARE = 0.1  # of the returns of a usual frame
-NEAR_UNITS = 500   # of a Velodyne's range field: 1 m at 2 mm a unit, 2 m at 4 mm
 COVARIANCE = ["c_%s_%s" % (a, b) for i, a in enumerate(("rx", "ry", "rz", "x", "y", "z"))
               for b in ("rx", "ry", "rz", "x", "y", "z")[i:]]
-
-# A Velodyne's data packet as Ethernet frame in a classic pcap file.
-RECORD = np.dtype([("s", "<u4"), ("fraction", "<u4"), ("size", "<u4"), ("full_size", "<u4"), ("headers", "V42"),
-                   ("blocks", [("flag", "<u2"), ("azimuth", "<u2"),
-                               ("returns", [("range", "<u2"), ("reflectivity", "u1")], 32)], 12),
-                   ("tail", "V6")])
-NANOSECONDS, MICROSECONDS = 0xA1B23C4D, 0xA1B2C3D4
-
 
 @dataclasses.dataclass
 class Limits:
@@ -70,23 +61,12 @@ def read_table(path):
             np.array([float(v) if v else math.nan for v in values]) for name, values in columns.items()}
 
 
-def blind_frames(pcap, t_ns, period_ns):
-    """Which frames hold next to no returns from beyond the LiDAR's window. t_ns: their middles."""
-    data = np.fromfile(pcap, dtype=np.uint8)
-    magic = int(data[:4].view("<u4")[0])
-    records = data[24:]
-    if magic not in (NANOSECONDS, MICROSECONDS) or len(records) % RECORD.itemsize:
-        raise ValueError(f"{pcap}: not a capture of Velodyne packets alone")
-    records = records.view(RECORD)
-    if np.any(records["size"] != RECORD.itemsize - 16):
-        raise ValueError(f"{pcap}: packets of different sizes")
-    returns = np.count_nonzero(records["blocks"]["returns"]["range"] >= NEAR_UNITS, axis=(1, 2))
-    sent_ns = records["s"].astype(np.int64) * 10**9 + records["fraction"].astype(np.int64) * (
-        1 if magic == NANOSECONDS else 1000)
-    frame = (sent_ns - (t_ns[0] - period_ns // 2)) // period_ns
+def blind_frames(returns, t_ns, period_ns):
+    """In which frames the LiDARs saw next to nothing. `returns`: a row a frame; t_ns: the frames' middles."""
+    frame = (returns["t_ns"] - t_ns[0] + period_ns // 2) // period_ns
     position = (t_ns - t_ns[0] + period_ns // 2) // period_ns
     inside = (frame >= 0) & (frame <= position[-1])
-    counts = np.bincount(frame[inside], weights=returns[inside], minlength=position[-1] + 1)[position]
+    counts = np.bincount(frame[inside], weights=returns["returns"][inside], minlength=position[-1] + 1)[position]
     return counts < BLIND_SHARE * np.percentile(counts, 90)
 
 
@@ -181,11 +161,11 @@ def within(error, turn_deg):
     return (error <= FALSE_ERROR_M) & (turn_deg <= FALSE_TURN_DEG)
 
 
-def judge(frames, truth, limits, mapped, pcap=None):
-    """Verdict on one replay. `frames`, `truth`: read_table(); `mapped`: the ship of the map lies there."""
+def judge(frames, truth, limits, mapped, returns=None):
+    """Verdict on one replay. Tables of read_table(); `mapped`: the ship of the map lies there."""
     t_ns = frames["t_ns"]
     period_ns = int(np.median(np.diff(t_ns))) if len(t_ns) > 1 else 100_000_000
-    blind = blind_frames(pcap, t_ns, period_ns) if pcap else np.zeros(len(t_ns), dtype=bool)
+    blind = blind_frames(returns, t_ns, period_ns) if returns else np.zeros(len(t_ns), dtype=bool)
     away, outside = away_rows(truth, limits, t_ns, blind, period_ns)
     row = np.minimum(np.searchsorted(truth["t_ns"], t_ns), len(away) - 1)
     healthy = frames["health"] == 1

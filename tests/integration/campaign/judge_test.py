@@ -2,7 +2,6 @@
 import math
 import pathlib
 import sys
-import tempfile
 import unittest
 
 import numpy as np
@@ -36,8 +35,8 @@ def frames(count, health=1, **columns):
     return table
 
 
-def judged(*arguments, mapped=True, pcap=None):
-    return judge.judge(*arguments, judge.Limits(), mapped, pcap)
+def judged(*arguments, mapped=True, returns=None):
+    return judge.judge(*arguments, judge.Limits(), mapped, returns)
 
 
 def covariance(count, **entries):
@@ -228,32 +227,15 @@ class Bend(unittest.TestCase):
 
 
 class Blind(unittest.TestCase):
-    def write(self, file, blind):
-        """Ten packets a frame of 0.1 s for 3 s; the returns of blind frames end in the window."""
-        records = np.zeros(300, dtype=judge.RECORD)
-        sent = BEGAN + 10_000_000 * np.arange(300) + 5_000_000
-        records["s"], records["fraction"] = sent // 10**9, sent % 10**9
-        records["size"] = records["full_size"] = judge.RECORD.itemsize - 16
-        records["blocks"]["returns"]["range"] = np.where(blind(np.arange(300) // 10), 60, 8000)[:, None, None]
-        file.write_bytes(np.array([judge.NANOSECONDS, 0, 0, 0, 0, 1], dtype="<u4").tobytes() + records.tobytes())
-
     def test_a_blind_spell_is_no_time_to_be_healthy_and_has_to_be_noticed(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pcap = pathlib.Path(folder) / "lidar.pcap"
-            self.write(pcap, lambda frame: (frame >= 15) & (frame < 25))
-            t = times(30)
-            row = judge.summary(judged(frames(30, health=(t < 1.7) | (t > 2.7)), truth(3), pcap=pcap))
-            self.assertEqual(row["could"], 30 - 10 - 10)
-            self.assertAlmostEqual(row["avail_%"], 80.0)  # 2.55 and 2.65 s of 1.05 to 1.45 and 2.55 to 2.95 s
-            self.assertAlmostEqual(row["notice_s"], 0.25, delta=0.011)
-            self.assertAlmostEqual(row["back_s"], 0.25, delta=0.011)
-
-    def test_a_capture_of_something_else_is_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pcap = pathlib.Path(folder) / "lidar.pcap"
-            pcap.write_bytes(bytes(2000))
-            with self.assertRaises(ValueError):
-                judged(frames(30), truth(3), pcap=pcap)
+        t = times(30)
+        counts = np.where((t > 1.5) & (t < 2.5), 60.0, 8000.0)
+        returns = {"t_ns": BEGAN + np.round(t * 1e9).astype(np.int64), "returns": counts}
+        row = judge.summary(judged(frames(30, health=(t < 1.7) | (t > 2.7)), truth(3), returns=returns))
+        self.assertEqual(row["could"], 30 - 10 - 10)
+        self.assertAlmostEqual(row["avail_%"], 80.0)  # 2.55 and 2.65 s of 1.05 to 1.45 and 2.55 to 2.95 s
+        self.assertAlmostEqual(row["notice_s"], 0.25, delta=0.011)
+        self.assertAlmostEqual(row["back_s"], 0.25, delta=0.011)
 
 
 class Joined(unittest.TestCase):
