@@ -10,9 +10,11 @@ namespace hulltrack {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
+constexpr float kSineOfCell = 0.01745F;  // of SphericalGrid: one degree
 
-/// Squared distance from a surfel to where the nearest ray meets its plane, m^2; kNone beyond kSurfelRadius,
-/// as far as it is known to be flat.
+/// Squared distance from a surfel to where the nearest ray meets its plane, m^2. Where none does within
+/// kSurfelRadius, as far as it is known to be flat, or in the cells around, this is how far off they are at
+/// least: rays of other cells are a degree away, in azimuth or in elevation.
 float nearest_ray2(const ScanView& view, const Point& p_L, const Point& n_L) {
   const float plane = n_L.dot(p_L);
   float nearest2 = kNone;
@@ -20,7 +22,8 @@ float nearest_ray2(const ScanView& view, const Point& p_L, const Point& n_L) {
     const Point met = plane / n_L.dot(returned) * returned;
     nearest2 = std::min(nearest2, (met - p_L).squaredNorm());  // not if it is parallel: no number
   });
-  return nearest2 <= kSurfelRadius * kSurfelRadius ? nearest2 : kNone;
+  const float looked = std::min(kSurfelRadius, p_L.head<2>().norm() * kSineOfCell);
+  return nearest2 <= kSurfelRadius * kSurfelRadius ? nearest2 : looked * looked;
 }
 
 }  // namespace
@@ -52,9 +55,6 @@ std::optional<double> ExpectedDistance::q1(const HullMap& map, std::span<const V
   }
   const auto quartile = between2_.begin() + static_cast<std::ptrdiff_t>(between2_.size() / 4);
   std::nth_element(between2_.begin(), quartile, between2_.end());
-  if (!std::isfinite(*quartile)) {
-    return std::nullopt;
-  }
   return std::sqrt(static_cast<double>(*quartile) + kRangeNoise * kRangeNoise);
 }
 

@@ -4,8 +4,9 @@
 // the place where the nearest ray meets its plane. How far that is depends on the sensor, on the range and on
 // the slope, not on the pose's error. Every ray that gave a return counts, wherever it ended: one that a
 // raindrop stopped tells where a return should have been. Visible flat map points (surfels) are asked for the
-// rays of every LiDAR whose sight of them is free; with none near, a surfel counts as infinitely far from
-// them. Frames W, H, L; metres. Thread rule: one owner, scratch is kept. Cost: 0.15 ms, bounded by kSamples.
+// rays of every LiDAR whose sight of them is free; with none near, a surfel counts as just that far from them
+// as has been looked. Frames W, H, L; metres. Thread rule: one owner, scratch is kept. Cost: 0.15 ms, bounded
+// by kSamples.
 #pragma once
 
 #include <optional>
@@ -29,9 +30,9 @@ class ExpectedDistance {
   /// 1 sigma of what else is between a map point and a return: the +-3 cm of range that makers state.
   static constexpr double kRangeNoise = 0.03;  // m
 
-  /// 25th percentile, m. Nothing if too few surfels are visible or three quarters of them have no ray within
-  /// 0.3 m.
-  /// `visible`: of map.probes_H(), at the pose T_W_H.
+  /// 25th percentile, m; nothing if too few surfels are visible. At most 0.3 m, as far as a surfel is known
+  /// to be flat: where three quarters of them have no ray that near, it is a lower bound. The ratio of Q1 to
+  /// it is then too large rather than too small. `visible`: of map.probes_H(), at the pose T_W_H.
   [[nodiscard]] std::optional<double> q1(const HullMap& map, std::span<const VisiblePoint> visible,
                                          const Pose& T_W_H, std::span<const ScanView> views);
 

@@ -50,9 +50,9 @@ void check_registration(const HealthLimits& limits, const Evidence& e, Findings&
 void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Findings& findings) {
   if (!metrics.q1_expected) {
     if (!metrics.few_surfels && !health.q1_healthy) {
-      findings.add(
-          State::degraded, fault::q1_high,
-          format_text("Q1 is %.3f m; too few rays meet the map to tell what it should be", metrics.q1));
+      findings.add(State::degraded, fault::q1_high,
+                   format_text("Q1 is %.3f m; nothing tells what it should be, and q1_healthy is not set",
+                               metrics.q1));
     }
     return;
   }

@@ -63,8 +63,7 @@ Echoes SimulatedLidar::through_air(const BerthWorld::Sweep& sweep, const DustPlu
     const Point origin = firing.origin.cast<float>();
     const auto [origin_W, direction_W] = BerthWorld::ray_W(sweep, t, origin, firing.direction.cast<float>());
     const double reach = echoes.first.range > 0.0 ? echoes.first.range : sensor().max_range;
-    if (const auto at =
-            around_.dust.stops(dust, origin_W, direction_W, static_cast<float>(reach), random))
+    if (const auto at = around_.dust.stops(dust, origin_W, direction_W, static_cast<float>(reach), random))
       echoes = behind_particle(static_cast<double>(*at), echoes, random);
   }
   if (around_.weather.when.active(t)) echoes = through_weather(around_.weather, sensor(), echoes, random);

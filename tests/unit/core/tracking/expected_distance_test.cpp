@@ -10,6 +10,8 @@
 #include <cmath>
 #include <functional>
 
+#include "core/map/surfels.hpp"
+
 namespace hulltrack {
 namespace {
 
@@ -101,14 +103,21 @@ TEST_F(WallInLines, PutsPointsThatNoRayPassesBehindAllOthers) {
   EXPECT_NEAR(*q1(), with_noise(kPitch / 4.0), 2.0 * kTolerance) << "the median of the half with rays";
   views.clear();
   add_lidar(kLidar, 0.0, [](const Point& met) { return met.y() < -5.0F ? 1.0F : 0.0F; });
-  EXPECT_FALSE(q1()) << "less than a quarter has rays";
-  EXPECT_FALSE(expected_distance.had_few_surfels()) << "it is the rays that are missing";
+  ASSERT_TRUE(q1());
+  EXPECT_NEAR(*q1(), with_noise(kSurfelRadius), 1e-6) << "less than a quarter has rays: at least so much";
 }
 
-TEST_F(WallInLines, ExpectsNothingOfAScanWithoutReturnsOrOfAFewPoints) {
-  add_lidar(kLidar, 0.0, [](const Point&) { return 0.0F; });
-  EXPECT_FALSE(q1());
-  views.clear();
+TEST_F(WallInLines, PromisesNoMoreThanHasBeenLookedAt) {
+  // From 10 m the cells around are a degree wide, 0.175 m: no ray within them tells no more than that.
+  constexpr double kDistance = 10.0;
+  add_lidar(Eigen::Vector3d(20.0 - kDistance, 0.0, 0.0).cast<float>(), 0.0,
+            [](const Point& met) { return met.y() < -5.0F ? 1.0F : 0.0F; });
+  ASSERT_TRUE(q1());
+  EXPECT_GT(*q1(), with_noise(kDistance * std::sin(radians(1.0)) - 1e-3));
+  EXPECT_LT(*q1(), with_noise(kSurfelRadius));
+}
+
+TEST_F(WallInLines, ExpectsNothingOfAFewPoints) {
   add_lidar(kLidar, 0.0);
   EXPECT_FALSE(q1(ExpectedDistance::kFewest - 1));
   EXPECT_TRUE(expected_distance.had_few_surfels());
