@@ -173,14 +173,16 @@ LidarStatus ScanBuilder::status(std::size_t index) const {
   assert(index < lidars_.size());
   const Lidar& lidar = lidars_[index];
   LidarStatus status = lidar.status;
-  status.clock_offset = lidar.clock.offset();
-  status.clock_drift = lidar.clock.drift();
-  status.clock_suspicion = lidar.clock.suspicion();
-  if (status.packets_rejected > 0) {
-    status.last_rejection = lidar.decoder->explain(lidar.last_rejection) + " from " +
-                            format_ipv4(lidar.rejected_ip) + ":" + std::to_string(lidar.rejected_port);
-  }
+  status.clock = lidar.clock.reading();
   return status;
+}
+
+std::string ScanBuilder::last_rejection(std::size_t index) const {
+  assert(index < lidars_.size());
+  const Lidar& lidar = lidars_[index];
+  if (lidar.status.packets_rejected == 0) return {};
+  return lidar.decoder->explain(lidar.last_rejection) + " from " + format_ipv4(lidar.rejected_ip) + ":" +
+         std::to_string(lidar.rejected_port);
 }
 
 }  // namespace hulltrack

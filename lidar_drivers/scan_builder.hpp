@@ -42,14 +42,11 @@ struct LidarStatus {
   ReturnMode return_mode = ReturnMode::unknown;
   bool field_of_view_cut = false;  // the sensor leaves sectors out
   double rpm = 0.0;
-  double packets_per_second = 0.0;    // over the last whole second of this LiDAR's stamps
-  double loss = 0.0;                  // 0..1, over the same second
-  MeasurementTime last_received{};    // of a decoded datagram; meaningless while packets == 0
-  bool clock_fault = false;           // time_source sensor: sensor and host disagree, host time is used
-  Nanoseconds clock_offset{};         // sensor minus host time modulo the sensor's wrap
-  std::optional<double> clock_drift;  // s/s, see SensorClock
-  std::string clock_suspicion;        // what a clock that is off is likely to be; empty while it is not
-  std::string last_rejection;         // expected, seen and sender; empty while packets_rejected == 0
+  double packets_per_second = 0.0;  // over the last whole second of this LiDAR's stamps
+  double loss = 0.0;                // 0..1, over the same second
+  MeasurementTime last_received{};  // of a decoded datagram; meaningless while packets == 0
+  bool clock_fault = false;         // time_source sensor: sensor and host disagree, host time is used
+  ClockReading clock{};             // of the sensor
 };
 
 class ScanBuilder {
@@ -77,7 +74,10 @@ class ScanBuilder {
   /// is none. `out.last_received` is left zero: the service, which alone knows the live clock, sets it.
   bool take(Scan& out);
 
+  /// Figures alone, cheap to ask for.
   [[nodiscard]] LidarStatus status(std::size_t lidar) const;
+  /// Expected, seen and sender of the newest refused datagram, for the log; empty while there was none.
+  [[nodiscard]] std::string last_rejection(std::size_t lidar) const;
   /// Finished frames that nobody took in time (the newest four are kept).
   [[nodiscard]] std::uint64_t frames_overrun() const { return frames_.frames_overrun(); }
   /// How often the stamps ran back by seconds, as in a recording across a clock that was set.

@@ -19,7 +19,8 @@ constexpr Nanoseconds kNeverSet = std::chrono::hours(24 * 365);
 /// TAI is ahead of UTC by as much since 2017, GPS time by 18 s.
 constexpr Nanoseconds kTaiMinusUtc = std::chrono::seconds(37);
 constexpr Nanoseconds kGpsMinusUtc = std::chrono::seconds(18);
-constexpr Nanoseconds kQuarter = std::chrono::minutes(15);  // time zones are multiples of it
+constexpr Nanoseconds kQuarter = std::chrono::minutes(15);      // time zones are multiples of it
+constexpr Nanoseconds kFarthestZones = std::chrono::hours(14);  // from UTC
 
 /// Sensor minus host, both modulo `wrap` (zero = none), as the smallest difference.
 Nanoseconds difference(Nanoseconds sensor, WallTime host, Nanoseconds wrap) {
@@ -31,6 +32,41 @@ Nanoseconds difference(Nanoseconds sensor, WallTime host, Nanoseconds wrap) {
 }
 
 bool is_near(Nanoseconds a, Nanoseconds b) { return std::chrono::abs(a - b) <= SensorClock::kTolerance; }
+
+/// In the largest unit of which it is more than two or so, to a tenth.
+std::string duration_words(Nanoseconds size) {
+  struct Unit {
+    double seconds;
+    const char* name;
+    Nanoseconds from;
+  };
+  constexpr Unit kUnits[] = {{365.25 * 86'400.0, "years", std::chrono::hours(2 * 8766)},
+                             {86'400.0, "days", std::chrono::hours(72)},
+                             {3'600.0, "h", std::chrono::hours(3)},
+                             {60.0, "min", std::chrono::minutes(10)},
+                             {1.0, "s", std::chrono::seconds(1)},
+                             {1e-3, "ms", Nanoseconds::zero()}};
+  const Unit* unit =
+      std::ranges::find_if(kUnits, [&](const Unit& candidate) { return size >= candidate.from; });
+  return format_text("%.1f %s", to_seconds(size) / unit->seconds, unit->name);
+}
+
+/// What a clock that is off by so much is likely to run on, as ": ..."; empty where nothing is known.
+std::string suspicion(const ClockReading& reading) {
+  const Nanoseconds off = reading.offset;
+  const Nanoseconds size = std::chrono::abs(off);
+  if (is_near(off, kTaiMinusUtc)) return ": it runs on TAI, as PTP does, not on UTC";
+  if (is_near(off, kGpsMinusUtc)) return ": it runs on GPS time, not on UTC";
+  if (is_near(size, kSecond)) return ": one of the two has missed a leap second";
+  if (reading.wrap > Nanoseconds::zero())
+    return ": it is not synchronised in the " + duration_words(reading.wrap) + " that it counts";
+  if (reading.time < kNeverSet)
+    return ": it was never set, it has counted " + duration_words(reading.time) +
+           " since it was switched on, or since 1970";
+  const Nanoseconds zone = (size + kQuarter / 2) / kQuarter * kQuarter;
+  if (zone <= kFarthestZones && is_near(size, zone)) return ": it keeps the time of another zone";
+  return {};
+}
 
 }  // namespace
 
@@ -75,25 +111,21 @@ std::optional<double> SensorClock::drift() const {
   return tt > 0.0 ? std::optional(to / tt) : std::nullopt;
 }
 
-std::string SensorClock::suspicion() const {
-  if (believed()) return {};
-  const Nanoseconds off = offset();
-  if (is_near(off, kTaiMinusUtc)) return "37 s ahead: it runs on TAI, as PTP does, not on UTC";
-  if (is_near(off, kGpsMinusUtc)) return "18 s ahead: it runs on GPS time, not on UTC";
-  if (is_near(std::chrono::abs(off), kSecond)) return "1 s apart: one of the two has missed a leap second";
-  if (wrap_ == Nanoseconds::zero() && newest_sensor_ < kNeverSet)
-    return format_text("never set: it has counted %.0f s since it was switched on, or since 1970",
-                       to_seconds(newest_sensor_));
-  const Nanoseconds zone = (std::chrono::abs(off) + kQuarter / 2) / kQuarter * kQuarter;
-  if (wrap_ == Nanoseconds::zero() && zone <= std::chrono::hours(14) && is_near(std::chrono::abs(off), zone))
-    return format_text("%.2f h %s: it keeps the time of another zone", to_seconds(zone) / 3600.0,
-                       off > Nanoseconds::zero() ? "ahead" : "behind");
-  if (wrap_ == Nanoseconds::zero())
-    return format_text("%.3f s %s this computer's", std::abs(to_seconds(off)),
-                       off > Nanoseconds::zero() ? "ahead of" : "behind");
-  return format_text("%.3f s %s this computer's in the %.0f min that it counts: it is not synchronised",
-                     std::abs(to_seconds(off)), off > Nanoseconds::zero() ? "ahead of" : "behind",
-                     to_seconds(wrap_) / 60.0);
+bool ClockReading::believed() const { return std::chrono::abs(offset) <= SensorClock::kTolerance; }
+
+std::string offset_words(Nanoseconds sensor_minus_host) {
+  return duration_words(std::chrono::abs(sensor_minus_host)) +
+         (sensor_minus_host > Nanoseconds::zero() ? " ahead" : " behind");
+}
+
+std::string clock_words(const ClockReading& reading) {
+  std::string words = offset_words(reading.offset) +
+                      (reading.offset > Nanoseconds::zero() ? " of this computer's" : " this computer's");
+  if (reading.drift)
+    words += format_text(" and %s %.1f ppm", *reading.drift < 0.0 ? "loses" : "gains",
+                         1e6 * std::abs(*reading.drift));
+  if (!reading.believed()) words += suspicion(reading);
+  return words;
 }
 
 }  // namespace hulltrack

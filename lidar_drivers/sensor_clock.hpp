@@ -16,6 +16,26 @@
 
 namespace hulltrack {
 
+/// How a sensor's clock stands against the host's.
+struct ClockReading {
+  Nanoseconds offset{};  // sensor minus host modulo `wrap`, the best of the last second
+  std::optional<double>
+      drift;           // s/s, what the sensor's clock gains; nothing until ten seconds have been seen
+  Nanoseconds time{};  // the sensor's, newest
+  Nanoseconds wrap{};  // as Decoder::clock_wrap()
+
+  /// Near enough to be used.
+  [[nodiscard]] bool believed() const;
+};
+
+/// An offset as one reads it, to a tenth of its unit: "3.2 ms behind", "37.0 s ahead", "56.0 years behind".
+[[nodiscard]] std::string offset_words(Nanoseconds sensor_minus_host);
+
+/// For log and probe, to follow "its clock is": offset and drift and, unless it is believed, what it is
+/// likely to run on. "37.0 s ahead of this computer's and gains 3.1 ppm: it runs on TAI, as PTP does, not on
+/// UTC".
+[[nodiscard]] std::string clock_words(const ClockReading& reading);
+
 class SensorClock {
  public:
   /// A clock farther off is not believed: at 0.3 m/s of a boom's tip it would shift points by 6 mm.
@@ -33,8 +53,7 @@ class SensorClock {
   [[nodiscard]] bool believed() const { return std::chrono::abs(offset()) <= kTolerance; }
   /// Seconds that the sensor's clock gains in a second; nothing until ten seconds have been seen.
   [[nodiscard]] std::optional<double> drift() const;
-  /// What the clock is likely to be, in words for the log; empty while it is believed.
-  [[nodiscard]] std::string suspicion() const;
+  [[nodiscard]] ClockReading reading() const { return {offset(), drift(), newest_sensor_, wrap_}; }
 
  private:
   static constexpr std::size_t kSeconds = 60;

@@ -85,7 +85,7 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
         return format_text(
             "dropped datagrams that are not those of a %s: %s; %llu so far. Compare `model` and `port` in "
             "the configuration with the sensor",
-            config_.model.c_str(), evidence.status.last_rejection.c_str(),
+            config_.model.c_str(), evidence.last_rejection.c_str(),
             static_cast<unsigned long long>(evidence.status.packets_rejected));
       },
       "no more malformed datagrams");
@@ -152,7 +152,7 @@ void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
       [&] {
         return format_text(
             "its clock is %s; the time of reception is used instead. Check its time synchronisation",
-            status.clock_suspicion.c_str());
+            clock_words(status.clock).c_str());
       },
       "its clock agrees again");
 }

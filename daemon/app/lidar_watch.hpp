@@ -18,6 +18,7 @@ namespace hulltrack {
 /// What the drivers know of one LiDAR now. Counters run from the start.
 struct LidarEvidence {
   LidarStatus status;
+  std::string last_rejection;          // as ScanBuilder::last_rejection()
   std::uint64_t foreign = 0;           // datagrams of the socket from unknown senders
   std::string last_foreign;            // "10.0.0.7:5000"
   std::uint64_t kernel_overflows = 0;  // of the socket

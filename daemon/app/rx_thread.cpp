@@ -148,8 +148,8 @@ void RxThread::look_at_lidars(SteadyTime now) {
 
 LidarEvidence RxThread::evidence(std::size_t lidar) const {
   const UdpSource& socket = sockets_.sources[sockets_.data_of[lidar]];
-  return {builder_.status(lidar), socket.counters().foreign, socket.last_foreign(),
-          socket.counters().kernel_overflows};
+  return {builder_.status(lidar), builder_.last_rejection(lidar), socket.counters().foreign,
+          socket.last_foreign(), socket.counters().kernel_overflows};
 }
 
 void RxThread::add_figures() {

@@ -1,14 +1,11 @@
 // `hulltrack probe`: what arrives, and what stands in the PLC's registers. For the person on the ladder.
 #include <poll.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -116,16 +113,6 @@ void show_traffic(std::uint32_t sender, const Recognition& recognition) {
   }
 }
 
-std::string clock_words(const LidarStatus& status) {
-  std::string words =
-      status.clock_suspicion.empty()
-          ? format_text("%.1f ms %s this computer's", std::abs(to_milliseconds(status.clock_offset)),
-                        status.clock_offset > Nanoseconds::zero() ? "ahead of" : "behind")
-          : status.clock_suspicion;
-  if (status.clock_drift) words += format_text(", gains %.1f ppm", 1e6 * *status.clock_drift);
-  return words;
-}
-
 void show_status(const LidarStatus& status) {
   if (status.packets == 0) return;
   row("returns", return_mode_name(status.return_mode));
@@ -137,7 +124,7 @@ void show_status(const LidarStatus& status) {
                               static_cast<double>(status.packets + status.packets_lost),
                           static_cast<unsigned long long>(status.packets_lost)));
   if (status.field_of_view_cut) row("sector", "it leaves sectors out");
-  row("clock", clock_words(status));
+  row("clock", clock_words(status.clock));
 }
 
 /// The verdict on one sender, and what to do next.

@@ -163,7 +163,7 @@ std::string RecordingPlayer::explain_no_frame() const {
     if (const LidarStatus status = builder_.status(i); status.packets_rejected > 0) {
       return pcap_name_ + ": none of " + std::to_string(status.packets_rejected) +
              " datagrams is of lidar \"" + lidars_[i].name + "\", a " + lidars_[i].model + ": " +
-             status.last_rejection + "; correct its model or port";
+             builder_.last_rejection(i) + "; correct its model or port";
     }
   }
   return {};

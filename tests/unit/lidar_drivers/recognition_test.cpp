@@ -60,7 +60,7 @@ TEST(Recognition, TellsRateReturnModeAndClockOfWhatItDecodes) {
   const LidarStatus status = recognition.candidates().front().status;
   EXPECT_EQ(status.return_mode, ReturnMode::dual);
   EXPECT_NEAR(status.rpm, 600.0, 1.0);
-  EXPECT_FALSE(status.clock_suspicion.empty()) << "it counts from 1970";
+  EXPECT_FALSE(status.clock.believed()) << "it counts from 1970";
 }
 
 TEST(Recognition, ARoboSensesDifopTellsTheNumberOfItsLasers) {

@@ -383,7 +383,7 @@ TEST(ScanBuilder, AnotherModelIsRefusedByName) {
   }
   EXPECT_EQ(builder.status(0).packets, 0U);
   EXPECT_EQ(builder.status(0).packets_rejected, 10U);
-  EXPECT_EQ(builder.status(0).last_rejection,
+  EXPECT_EQ(builder.last_rejection(0),
             "expected VLP-16 (product code 0x22), saw VLP-32C (product code 0x28) from 0.0.0.0:0");
 }
 
@@ -419,7 +419,7 @@ TEST(ScanBuilder, SensorTimeIsUsedWhileItAgreesWithTheHost) {
     const MeasurementTime expected = options.start + (believed ? offset : Nanoseconds::zero());
     EXPECT_NEAR(to_milliseconds(scans[0].begin - expected), 0.0, 0.002);
     if (offset == seconds(37)) {
-      EXPECT_NEAR(to_seconds(builder.status(0).clock_offset), 37.0, 1e-3);
+      EXPECT_NEAR(to_seconds(builder.status(0).clock.offset), 37.0, 1e-3);
     }
   }
 }

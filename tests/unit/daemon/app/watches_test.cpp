@@ -66,7 +66,7 @@ TEST_F(LidarWatchTest, NamesTheForeignSender) {
 
 TEST_F(LidarWatchTest, NamesWhatWasExpectedAndSeenFromAnotherModel) {
   evidence.status.packets_rejected = 5;
-  evidence.status.last_rejection = "product 0x28 (VLP-32C) instead of 0x22";
+  evidence.last_rejection = "product 0x28 (VLP-32C) instead of 0x22";
   EXPECT_EQ(look(seconds(1)), fault::lidar_silent) << "no packet can be used";
   ASSERT_EQ(log.lines.size(), 2U);
   EXPECT_THAT(log.last(), HasSubstr("not those of a velodyne_vlp16: product 0x28 (VLP-32C) instead of 0x22"));
@@ -87,13 +87,14 @@ TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
   evidence.status.loss = 0.07;
   evidence.status.rpm = 300.0;
   evidence.status.clock_fault = true;
-  evidence.status.clock_suspicion = "37 s ahead: it runs on TAI";
+  evidence.status.clock = {seconds(37), 3.1e-6, seconds(1'767'251'437), seconds(0)};
   EXPECT_EQ(look(seconds(1)), fault::clock);
   ASSERT_EQ(log.lines.size(), 3U);
   EXPECT_THAT(log.lines[0].text, HasSubstr("7.0 % of its packets"));
   EXPECT_THAT(log.lines[1].text, HasSubstr("300 rpm where frame_rate_hz asks for 600"));
   EXPECT_THAT(log.lines[2].text,
-              HasSubstr("its clock is 37 s ahead: it runs on TAI; the time of reception is used"));
+              HasSubstr("its clock is 37.0 s ahead of this computer's and gains 3.1 ppm: it runs on TAI, as "
+                        "PTP does, not on UTC; the time of reception is used instead"));
 }
 
 TEST_F(LidarWatchTest, TellsOfAChangedReturnModeAndOfSectorsLeftOutOnce) {
