@@ -23,6 +23,16 @@ enum class ReturnMode : std::uint8_t { unknown, strongest, last, first, dual, tr
 /// Lower-case word of a return mode, for logs.
 [[nodiscard]] const char* return_mode_name(ReturnMode mode);
 
+/// What a sensor says that its clock follows. No proof, a Livox for one says PTP before it has the time:
+/// times are compared all the same (sensor_clock.hpp).
+enum class ClockReference : std::uint8_t {
+  unknown,  // it does not say
+  none,     // its own oscillator: it is not synchronised
+  ptp,
+  gps,
+  pulse,  // a pulse without a date
+};
+
 struct DecoderOptions {
   bool firing_correction = true;  // azimuth turned on to each laser's own firing time
   bool vertical_offset = true;    // each laser's height above the optical centre, where the maker states one
@@ -49,6 +59,7 @@ struct DecodedPacket {
   double rotation_rate = 0.0;  // rad/s, >= 0
   ReturnMode return_mode = ReturnMode::unknown;
   std::optional<PacketCounter> counter;  // where the format has one
+  ClockReference clock_reference = ClockReference::unknown;
   /// Where a sector begins that the sensor leaves out: rad, last azimuth before a jump inside the datagram.
   std::optional<double> cut_azimuth;
 };

@@ -119,7 +119,8 @@ void ScanBuilder::note_sequence(std::size_t index, const PacketSequence::Step& s
 
 MeasurementTime ScanBuilder::host_or_sensor_time(Lidar& lidar, const DecodedPacket& packet,
                                                  const Datagram& datagram) {
-  const Nanoseconds offset = lidar.clock.note(packet.sensor_time, datagram.received_utc);
+  const Nanoseconds offset =
+      lidar.clock.note(packet.sensor_time, datagram.received_utc, packet.clock_reference);
   if (lidar.config.time_source == TimeSource::receive) return datagram.received;
   lidar.status.clock_fault = !lidar.clock.believed();
   return lidar.status.clock_fault ? datagram.received : datagram.received + offset;

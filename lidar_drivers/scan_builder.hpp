@@ -45,7 +45,7 @@ struct LidarStatus {
   double packets_per_second = 0.0;  // over the last whole second of this LiDAR's stamps
   double loss = 0.0;                // 0..1, over the same second
   MeasurementTime last_received{};  // of a decoded datagram; meaningless while packets == 0
-  bool clock_fault = false;         // time_source sensor: sensor and host disagree, host time is used
+  bool clock_fault = false;         // time_source sensor: its clock is not believed, host time is used
   ClockReading clock{};             // of the sensor
 };
 

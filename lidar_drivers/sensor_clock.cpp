@@ -68,9 +68,25 @@ std::string suspicion(const ClockReading& reading) {
   return {};
 }
 
+const char* statement(ClockReference reference) {
+  switch (reference) {
+    case ClockReference::none:
+      return "; the sensor says that it is not synchronised";
+    case ClockReference::ptp:
+      return "; the sensor says that it follows PTP";
+    case ClockReference::gps:
+      return "; the sensor says that it follows GPS";
+    case ClockReference::pulse:
+      return "; the sensor says that it follows a pulse without a date";
+    case ClockReference::unknown:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
 
-Nanoseconds SensorClock::note(Nanoseconds sensor, WallTime host) {
+Nanoseconds SensorClock::note(Nanoseconds sensor, WallTime host, ClockReference reference) {
   const Nanoseconds offset = difference(sensor, host, wrap_);
   const Nanoseconds elapsed = host - second_began_;
   const bool jumped = best_ && std::chrono::abs(offset - *best_) > kTolerance + kJump;
@@ -88,6 +104,7 @@ Nanoseconds SensorClock::note(Nanoseconds sensor, WallTime host) {
     so_far_ = std::max(*so_far_, offset);
   }
   newest_sensor_ = sensor;
+  reference_ = reference;
   return offset;
 }
 
@@ -111,7 +128,9 @@ std::optional<double> SensorClock::drift() const {
   return tt > 0.0 ? std::optional(to / tt) : std::nullopt;
 }
 
-bool ClockReading::believed() const { return std::chrono::abs(offset) <= SensorClock::kTolerance; }
+bool ClockReading::believed() const {
+  return reference != ClockReference::none && is_near(offset, Nanoseconds::zero());
+}
 
 std::string offset_words(Nanoseconds sensor_minus_host) {
   return duration_words(std::chrono::abs(sensor_minus_host)) +
@@ -124,8 +143,8 @@ std::string clock_words(const ClockReading& reading) {
   if (reading.drift)
     words += format_text(" and %s %.1f ppm", *reading.drift < 0.0 ? "loses" : "gains",
                          1e6 * std::abs(*reading.drift));
-  if (!reading.believed()) words += suspicion(reading);
-  return words;
+  if (!is_near(reading.offset, Nanoseconds::zero())) words += suspicion(reading);
+  return words + statement(reading.reference);
 }
 
 }  // namespace hulltrack

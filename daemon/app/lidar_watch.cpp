@@ -5,6 +5,7 @@
 
 #include "core/base/text.hpp"
 #include "daemon/app/live_time.hpp"
+#include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {
 namespace {
@@ -15,6 +16,15 @@ constexpr double kWorthyLoss = 0.005;
 constexpr double kRateTolerance = 0.05;
 /// A sensor tells its lasers' angles about once a second.
 constexpr std::chrono::seconds kLongestUntold{3};
+
+std::string clock_remedy(const ClockReading& clock, const std::string& name) {
+  if (clock.reference != ClockReference::none) return "Check its time synchronisation";
+  const LidarModel* model = find_lidar_model(name);
+  const bool in_file = model != nullptr && model->calibration == LidarModel::Calibration::required;
+  return "Set up PTP or GPS on it" +
+         (in_file ? " and fetch its " + std::string(model->calibration_file) + " again, which says so"
+                  : std::string());
+}
 
 }  // namespace
 
@@ -150,9 +160,8 @@ void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
   tell(
       clock_log_, status.clock_fault, now,
       [&] {
-        return format_text(
-            "its clock is %s; the time of reception is used instead. Check its time synchronisation",
-            clock_words(status.clock).c_str());
+        return "its clock is " + clock_words(status.clock) + "; the time of reception is used instead. " +
+               clock_remedy(status.clock, config_.model);
       },
       "its clock agrees again");
 }

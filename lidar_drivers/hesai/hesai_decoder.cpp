@@ -67,6 +67,7 @@ DecodeOutcome HesaiDecoder::decode(std::span<const std::uint8_t> payload, Decode
   out.duration = datagram.last_firing - first_pulse_;
   out.interval = rotation.time[last] + model_.block_period;
   out.sensor_time = read_clock(payload, model_) + model_.block_time + datagram.last_firing - timed_block;
+  out.clock_reference = ClockReference::unknown;
   out.first_azimuth = rotation.azimuth_at(0, first_pulse_);
   out.last_azimuth = rotation.azimuth_at(last, last_pulse_);
   out.rotation_rate = rotation.rate();

@@ -36,7 +36,7 @@ std::uint64_t date_stamp(Bytes payload, std::size_t at) {
 }
 
 std::uint64_t read_stamp(Bytes payload, const Generation& generation) {
-  const bool date = &generation == &kGeneration1 && payload[kStampTypeOffset] == kStampIsDate;
+  const bool date = &generation == &kGeneration1 && payload[generation.stamp_type_offset] == kStampIsDate;
   const std::size_t at = generation.stamp_offset;
   return (date ? date_stamp(payload, at) : read_le64(payload, at)) & kStampMask;
 }
@@ -95,6 +95,9 @@ void LivoxDecoder::tell_times(std::span<const std::uint8_t> payload, const Heade
   out.duration = header.duration;
   out.interval = steps > 0 ? header.duration * (steps + 1) / steps : model_.shot_period;
   out.sensor_time = Nanoseconds(static_cast<std::int64_t>(header.stamp)) + header.duration;
+  const std::span<const ClockReference> references = model_.generation->stamp_types;
+  const std::uint8_t stamp_type = payload[model_.generation->stamp_type_offset];
+  out.clock_reference = stamp_type < references.size() ? references[stamp_type] : ClockReference::unknown;
   out.zero_crossing.reset();
   out.first_azimuth = out.last_azimuth = out.rotation_rate = 0.0;
   constexpr ReturnMode kModes[] = {ReturnMode::unknown, ReturnMode::dual, ReturnMode::triple};

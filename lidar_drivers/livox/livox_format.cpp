@@ -24,12 +24,28 @@ constexpr RecordKind kKinds2[] = {
     {.type = 0x11, .bytes = 28, .echoes = 2, .echo_bytes = 14},
 };
 
+constexpr ClockReference kStampTypes1[] = {ClockReference::none, ClockReference::ptp, ClockReference::unknown,
+                                           ClockReference::gps, ClockReference::pulse};
+constexpr ClockReference kStampTypes2[] = {ClockReference::none, ClockReference::ptp, ClockReference::gps};
+
 }  // namespace
 
-constexpr Generation kGeneration1{
-    .version = 5, .header = 18, .type_offset = 9, .stamp_offset = 10, .imu_type = 6, .kinds = kKinds1};
-constexpr Generation kGeneration2{
-    .version = 0, .header = 36, .type_offset = 10, .stamp_offset = 28, .imu_type = 0, .kinds = kKinds2};
+constexpr Generation kGeneration1{.version = 5,
+                                  .header = 18,
+                                  .type_offset = 9,
+                                  .stamp_type_offset = 8,
+                                  .stamp_types = kStampTypes1,
+                                  .stamp_offset = 10,
+                                  .imu_type = 6,
+                                  .kinds = kKinds1};
+constexpr Generation kGeneration2{.version = 0,
+                                  .header = 36,
+                                  .type_offset = 10,
+                                  .stamp_type_offset = 11,
+                                  .stamp_types = kStampTypes2,
+                                  .stamp_offset = 28,
+                                  .imu_type = 0,
+                                  .kinds = kKinds2};
 
 std::span<const ModelTable> models() {
   // 200,000, 452,000 and 240,000 shots a second. An Avia's host picks the port when it sets the sensor up, so

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/base/time.hpp"
+#include "lidar_drivers/decoder.hpp"
 
 namespace hulltrack::livox {
 
@@ -31,6 +32,8 @@ struct Generation {
   std::uint8_t version;  // first byte of a datagram
   std::size_t header;    // bytes
   std::size_t type_offset;
+  std::size_t stamp_type_offset;
+  std::span<const ClockReference> stamp_types;  // by stamp type; a larger one is unknown
   std::size_t stamp_offset;
   std::uint8_t imu_type;  // data type of the IMU's datagrams, which have no points
   std::span<const RecordKind> kinds;
@@ -56,11 +59,9 @@ inline constexpr std::size_t kIntervalOffset = 3;  // u16, 0.1 us, first to last
 inline constexpr std::size_t kDotsOffset = 5;      // u16, records
 inline constexpr std::size_t kCountOffset = 7;     // u16, one more each datagram
 inline constexpr std::uint64_t kCountWrap = 65'536;
-inline constexpr std::size_t kTimeTypeOffset = 11;
 inline constexpr Nanoseconds kIntervalUnit{100};
 
 // Generation 1's header.
-inline constexpr std::size_t kStampTypeOffset = 8;
 inline constexpr std::uint8_t kStampIsDate = 3;  // year - 2000, month, day, hour u8, us of the hour u32 (UTC)
 
 inline constexpr int kLargestTheta = 18'000;  // 0.01 deg

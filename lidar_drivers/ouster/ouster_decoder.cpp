@@ -159,6 +159,7 @@ void OusterDecoder::tell_rotation(std::span<const std::uint8_t> payload, const C
   const double spacing = timed ? to_seconds(out.duration) / steps : nominal;
   out.interval = Nanoseconds(std::llround(static_cast<double>(metadata_.columns_per_packet) * spacing * 1e9));
   out.sensor_time = Nanoseconds(static_cast<std::int64_t>(columns.last().stamp));
+  out.clock_reference = metadata_.clock_reference;
   out.zero_crossing.reset();
   if (columns.first().id == 0) out.zero_crossing = columns.first().dt;
   out.first_azimuth = kTurn * columns.first().id / per_frame;

@@ -221,6 +221,21 @@ void read_sensor(const Json& root, Metadata& m) {
   m.serial = number ? std::stoull(digits) : 0;
 }
 
+/// A mode that is not known changes nothing but what is said of the clock, so it is none of the file's
+/// errors. A sync pulse counts seconds since power-on unless an NMEA message brings the date (firmware
+/// manual, "Time Synchronization").
+ClockReference read_clock(const Json& root) {
+  const auto place = {"config_params", ""};
+  const auto is = [&](const char* name, std::string_view value) {
+    const Key key(root, place, name);
+    return key.given() && key.text("a mode") == value;
+  };
+  if (is("timestamp_mode", "TIME_FROM_INTERNAL_OSC")) return ClockReference::none;
+  if (is("timestamp_mode", "TIME_FROM_PTP_1588")) return ClockReference::ptp;
+  if (!is("timestamp_mode", "TIME_FROM_SYNC_PULSE_IN")) return ClockReference::unknown;
+  return is("multipurpose_io_mode", "INPUT_NMEA_UART") ? ClockReference::gps : ClockReference::pulse;
+}
+
 }  // namespace
 
 Result<Metadata> parse_metadata(std::string_view json, const std::string& name) {
@@ -231,6 +246,7 @@ Result<Metadata> parse_metadata(std::string_view json, const std::string& name) 
     read_layout(root, metadata);
     read_beams(root, metadata);
     read_sensor(root, metadata);
+    metadata.clock_reference = read_clock(root);
     if (metadata.packet_bytes() > kMaxPacketBytes) {
       return Error{name + format_text(": columns_per_packet: %zu columns make a datagram of %zu bytes; UDP "
                                       "carries %zu",

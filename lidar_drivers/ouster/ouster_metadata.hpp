@@ -15,6 +15,7 @@
 
 #include "core/base/result.hpp"
 #include "core/geometry/se3.hpp"
+#include "lidar_drivers/decoder.hpp"
 #include "lidar_drivers/ouster/ouster_format.hpp"
 
 namespace hulltrack::ouster {
@@ -32,7 +33,9 @@ struct Metadata {
   int window_first = 0;                 // measurement ids that the sensor sends, both included;
   int window_last = 1023;               // first > last: the window goes through 0
   std::uint64_t serial = 0;             // 0 = not told
-  std::vector<Beam> beams;              // by pixel row: 16, 32, 64 or 128
+  /// By timestamp_mode and multipurpose_io_mode: how the clock is set up, not whether it has the time.
+  ClockReference clock_reference = ClockReference::unknown;
+  std::vector<Beam> beams;  // by pixel row: 16, 32, 64 or 128
   // Where the beams start, mm, in the lidar frame at measurement 0; the distance is included in a range.
   double beam_origin_x = 0.0;
   double beam_origin_z = 0.0;

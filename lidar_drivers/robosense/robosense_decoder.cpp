@@ -72,14 +72,18 @@ bool RobosenseDecoder::inform(std::span<const std::uint8_t> payload) {
   if (!is_difop(payload)) return false;
   const auto difop = read_difop(payload, model_);
   if (!difop) return false;
-  unit_ = *difop;
+  inform(*difop);
+  return true;
+}
+
+void RobosenseDecoder::inform(const Difop& unit) {
+  unit_ = unit;
   for (std::size_t k = 0; k < model_.lasers; ++k) {
     const double elevation = radians(unit_->angles[k].elevation_deg);
     const double azimuth = radians(unit_->angles[k].azimuth_deg);
     beams_[k] = {std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth),
                  std::sin(elevation)};
   }
-  return true;
 }
 
 DecodeOutcome RobosenseDecoder::decode(std::span<const std::uint8_t> payload, DecodedPacket& out) const {
@@ -95,6 +99,7 @@ DecodeOutcome RobosenseDecoder::decode(std::span<const std::uint8_t> payload, De
   out.duration = rotation.duration;
   out.interval = rotation.time[last] + rotation.span;
   out.sensor_time = read_clock(payload, model_.family) + out.duration;
+  out.clock_reference = unit_->clock_reference;
   out.first_azimuth = centidegrees_to_rad(rotation.azimuth[0]);
   out.last_azimuth = centidegrees_to_rad(std::fmod(last_azimuth + kCentidegrees, kCentidegrees));
   out.rotation_rate = centidegrees_to_rad(rotation.rate) / to_seconds(rotation.span);

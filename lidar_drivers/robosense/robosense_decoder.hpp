@@ -28,6 +28,8 @@ class RobosenseDecoder final : public Decoder {
                                      DecodedPacket& out) const override;
   /// A unit of another model is taken in too, as far as can be told: its data are refused from then on.
   bool inform(std::span<const std::uint8_t> payload) override;
+  /// The same of a DIFOP packet that was read already.
+  void inform(const Difop& unit);
   [[nodiscard]] std::string explain(const DecodeOutcome& outcome) const override;
   [[nodiscard]] Nanoseconds clock_wrap() const override { return Nanoseconds::zero(); }
 

@@ -27,6 +27,11 @@ ReturnMode return_mode_of(Family family, std::uint8_t code) {
   return ReturnMode::unknown;
 }
 
+ClockReference clock_reference_of(std::uint8_t state) {
+  constexpr ClockReference kStates[] = {ClockReference::none, ClockReference::gps, ClockReference::ptp};
+  return state < std::size(kStates) ? kStates[state] : ClockReference::unknown;
+}
+
 /// 0.01 deg; none where it is not calibrated or out of range.
 std::optional<int> signed_angle(Bytes payload, std::size_t at) {
   const std::uint8_t sign = payload[at];
@@ -102,6 +107,8 @@ Result<Difop> read_difop(Bytes payload, const ModelTable& model) {
   difop.rpm = rpm <= kMaxRpm ? rpm : 0.0;
   difop.mode_code = payload[kDifopReturnModeOffset];
   difop.mode = return_mode_of(model.family, difop.mode_code);
+  difop.clock_reference =
+      model.tells_clock ? clock_reference_of(payload[kDifopClockOffset]) : ClockReference::unknown;
   return difop;
 }
 

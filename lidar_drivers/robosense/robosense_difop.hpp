@@ -13,7 +13,10 @@
 // The Bpearl shows by a laser that looks up by more than 50 deg: its own cover the 90 deg from the horizon to
 // the zenith (user manual, 6.1), no other model's look up by more than 15 deg.
 // Of these the capture proves the 32-laser Helios; the others' places are the maker's driver's.
-// Thread rule: pure functions.
+// The clock's state @302 is that of the Helios and the Bpearl: 0 not synchronised, 1 by GPS, 2 by PTP
+// (Nebula's decoders; the capture's unit says 0 and shows 2017). In the RS16's and RS32's packets other
+// things stand there, and a Ruby Plus, which is none of these models, counts the other way round (user
+// manual, B.13: 0 is success). Thread rule: pure functions.
 #pragma once
 
 #include <array>
@@ -29,6 +32,7 @@ namespace hulltrack::robosense {
 inline constexpr std::array<std::uint8_t, 8> kDifopId = {0xA5, 0xFF, 0x00, 0x5A, 0x11, 0x11, 0x55, 0x55};
 inline constexpr std::size_t kDifopRpmOffset = 8;
 inline constexpr std::size_t kDifopReturnModeOffset = 300;
+inline constexpr std::size_t kDifopClockOffset = 302;
 inline constexpr std::size_t kDifopVerticalOffset = 468;
 inline constexpr std::size_t kDifopHorizontalOffset = 564;
 inline constexpr std::size_t kDifopRs16VerticalOffset = 1165;
@@ -46,6 +50,7 @@ struct Difop {
   double rpm;                              // as set; 0 = not told
   std::uint8_t mode_code;
   ReturnMode mode;  // unknown: the code is none of the model's
+  ClockReference clock_reference;
 };
 
 /// Is it a DIFOP packet of any model?

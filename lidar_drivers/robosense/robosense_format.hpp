@@ -53,6 +53,7 @@ struct ModelTable {
   std::string_view name;  // in the model registry
   std::string_view title;
   Family family;
+  bool tells_clock;      // its DIFOP packet says what the clock follows
   std::size_t lasers;    // 16 or 32
   bool to_zenith;        // they look up to the zenith, else to 15 deg at most
   double distance_unit;  // m

@@ -25,9 +25,10 @@ Result<std::unique_ptr<Decoder>> make_decoder(const ModelTable& table, const Dec
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(content.data()),
                     static_cast<std::size_t>(file.gcount()));
   if (bytes.size() > kPacketBytes) return Error{name + " has more than the 1248 bytes of a DIFOP packet"};
-  const auto difop = read_difop(bytes, table);
+  auto difop = read_difop(bytes, table);
   if (!difop) return Error{name + " " + difop.error().message};
-  decoder->inform(bytes);
+  difop->clock_reference = ClockReference::unknown;  // it is long ago that the file was taken
+  decoder->inform(*difop);
   if (!fits(*difop, table)) {
     return Error{name + ": " + std::string(table.name) + ": " +
                  decoder->explain({.status = DecodeStatus::wrong_product})};

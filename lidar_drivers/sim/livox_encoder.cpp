@@ -79,7 +79,7 @@ std::vector<std::uint8_t> LivoxEncoder::encode(std::uint64_t packet,
   write_le16(bytes, livox::kDotsOffset, kShots);
   write_le16(bytes, livox::kCountOffset, static_cast<std::uint16_t>(packet % livox::kCountWrap));
   bytes[generation.type_offset] = kCartesian;
-  bytes[livox::kTimeTypeOffset] = kPtp;
+  bytes[generation.stamp_type_offset] = kPtp;
   const auto stamp = static_cast<std::uint64_t>((config_.utc + first_firing(packet)).count());
   write_le32(bytes, generation.stamp_offset, static_cast<std::uint32_t>(stamp));
   write_le32(bytes, generation.stamp_offset + 4, static_cast<std::uint32_t>(stamp >> 32));

@@ -16,6 +16,8 @@ namespace {
 
 using robosense::Family;
 
+constexpr std::uint8_t kPtp = 2;  // the clock's state in a DIFOP packet
+
 std::uint8_t mode_code(ReturnMode mode, Family family) {
   if (mode == ReturnMode::dual) return 0;
   if (family == Family::helios) return mode == ReturnMode::last ? 5 : 4;
@@ -143,6 +145,7 @@ SensorInformation RobosenseEncoder::information() const {
   std::ranges::copy(robosense::kDifopId, bytes.begin());
   write_be16(bytes, robosense::kDifopRpmOffset, static_cast<std::uint16_t>(std::lround(config_.rpm)));
   bytes[robosense::kDifopReturnModeOffset] = mode_code(config_.return_mode, model_->family);
+  if (model_->tells_clock) bytes[robosense::kDifopClockOffset] = kPtp;
   if (model_->family == Family::classic) {
     for (std::size_t k = 0; k < model_->lasers; ++k) {
       const std::size_t at = robosense::kDifopRs16VerticalOffset + k * robosense::kAngleBytes;

@@ -105,6 +105,7 @@ DecodeOutcome VelodyneDecoder::decode(std::span<const std::uint8_t> payload, Dec
   out.interval = rotation.time[last] + model_.block_period;
   out.sensor_time =
       (std::chrono::microseconds(read_le32(payload, kTimestampOffset)) + out.duration) % kClockWrap;
+  out.clock_reference = ClockReference::unknown;
   out.first_azimuth = centidegrees_to_rad(rotation.azimuth[0]);
   out.last_azimuth = centidegrees_to_rad(std::fmod(last_azimuth + kCentidegrees, kCentidegrees));
   out.rotation_rate = centidegrees_to_rad(rotation.rate) / to_seconds(model_.block_period);

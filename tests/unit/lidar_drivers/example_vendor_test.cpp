@@ -57,6 +57,7 @@ class ExampleDecoder final : public Decoder {
     if (out.last_azimuth < out.first_azimuth)
       out.zero_crossing = Nanoseconds(-std::llround(1e9 * out.last_azimuth / kRate));
     out.return_mode = ReturnMode::strongest;
+    out.clock_reference = ClockReference::unknown;  // its datagrams do not say whether it is synchronised
     for (std::size_t shot = 0; shot < kShots; ++shot) {
       const std::size_t at = kHeaderBytes + shot * kShotBytes;
       const double range = 0.01 * read_le16(payload, at);

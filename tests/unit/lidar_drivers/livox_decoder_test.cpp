@@ -212,6 +212,29 @@ TEST(LivoxDecoder, DateStampsAreReadAndNonsenseStaysInBounds) {
   EXPECT_GT(decode("livox_mid360", far).sensor_time, Nanoseconds::zero());
 }
 
+TEST(LivoxDecoder, TellsWhatItsClockFollows) {
+  const auto second = [](std::uint8_t type) {
+    auto datagram = LivoxBytes::second(1, 14, 96);
+    datagram.put(11, type, 1);
+    return decode("livox_hap", datagram).clock_reference;
+  };
+  EXPECT_EQ(second(0), ClockReference::none);
+  EXPECT_EQ(second(1), ClockReference::ptp);
+  EXPECT_EQ(second(2), ClockReference::gps);
+  EXPECT_EQ(second(3), ClockReference::unknown);
+  const auto first = [](std::uint8_t type) {
+    auto datagram = LivoxBytes::first(2, 14, 96);
+    datagram.put(8, type, 1);
+    return decode("livox_avia", datagram).clock_reference;
+  };
+  EXPECT_EQ(first(0), ClockReference::none);
+  EXPECT_EQ(first(1), ClockReference::ptp);
+  EXPECT_EQ(first(2), ClockReference::unknown);
+  EXPECT_EQ(first(3), ClockReference::gps);
+  EXPECT_EQ(first(4), ClockReference::pulse);
+  EXPECT_EQ(first(255), ClockReference::unknown);
+}
+
 TEST(LivoxDecoder, OnlyWhatTheManualCallsNoiseIsDropped) {
   for (int tag = 0; tag < 256; ++tag) {
     auto datagram = LivoxBytes::second(1, 14, 96);

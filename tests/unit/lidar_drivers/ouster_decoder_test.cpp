@@ -183,6 +183,13 @@ TEST(OusterDecoder, AClockThatIsSetBetweenTwoColumnsIsNotFollowed) {
   }
 }
 
+TEST(OusterDecoder, SaysOfItsClockWhatTheMetadataSay) {
+  auto metadata = ouster::parse_metadata(OusterText{}.flat(), "os.json").value();
+  metadata.clock_reference = ClockReference::ptp;
+  const ouster::OusterDecoder decoder(metadata, {});
+  EXPECT_EQ(decode(decoder, OusterBytes(Kind::single)).clock_reference, ClockReference::ptp);
+}
+
 TEST(OusterDecoder, TheTurnBeginsAtMeasurementZero) {
   const auto packet = decode(Kind::single, OusterBytes(Kind::single, 0, 1'000'000'000, 97'656));
   ASSERT_TRUE(packet.zero_crossing);

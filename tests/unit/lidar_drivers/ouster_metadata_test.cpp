@@ -61,6 +61,24 @@ TEST(OusterMetadata, WithoutAProfileTheFirmwareIsAnOldOne) {
   EXPECT_EQ(m->packet_bytes(), 16 * (16 + 12 * 16 + 4U));
 }
 
+TEST(OusterMetadata, TellsWhatTheClockFollows) {
+  const auto reference = [](const std::string& keys) {
+    const std::string mode = R"("lidar_mode": "1024x10")";
+    const auto nested = parse_metadata(with(OusterText{}.nested(), mode, mode + keys), "os.json");
+    const auto flat = parse_metadata(with(OusterText{}.flat(), mode, mode + keys), "os.json");
+    EXPECT_EQ(nested->clock_reference, flat->clock_reference) << keys;
+    return nested->clock_reference;
+  };
+  EXPECT_EQ(reference(""), ClockReference::unknown);
+  EXPECT_EQ(reference(R"(, "timestamp_mode": "TIME_FROM_INTERNAL_OSC")"), ClockReference::none);
+  EXPECT_EQ(reference(R"(, "timestamp_mode": "TIME_FROM_PTP_1588")"), ClockReference::ptp);
+  const std::string pulse = R"(, "timestamp_mode": "TIME_FROM_SYNC_PULSE_IN")";
+  EXPECT_EQ(reference(pulse), ClockReference::pulse);
+  EXPECT_EQ(reference(pulse + R"(, "multipurpose_io_mode": "INPUT_NMEA_UART")"), ClockReference::gps);
+  EXPECT_EQ(reference(pulse + R"(, "multipurpose_io_mode": "OFF")"), ClockReference::pulse);
+  EXPECT_EQ(reference(R"(, "timestamp_mode": "TIME_FROM_THE_STARS")"), ClockReference::unknown);
+}
+
 TEST(OusterMetadata, ABeamTransformGoesBeforeTheSingleDistance) {
   OusterText text;
   text.origin += R"(, "beam_to_lidar_transform": [1, 0, 0, 12, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 0, 1])";

@@ -127,13 +127,36 @@ TEST(RobosenseDifop, AUnitOfAnotherModelIsNamed) {
   }
 }
 
+TEST(RobosenseDifop, TellsWhatTheClockFollows) {
+  const auto reference = [](const char* model, RobosenseBytes difop, std::uint8_t state) {
+    difop[302] = state;
+    const bool helios = std::string_view(model).find("helios") != std::string_view::npos;
+    RobosenseDecoder decoder(*robosense::find_model(model), {});
+    EXPECT_TRUE(decoder.inform(difop));
+    DecodedPacket packet;
+    const auto azimuths = block_azimuths(0, 20);
+    EXPECT_TRUE(
+        decoder.decode(helios ? test::helios_bytes(azimuths) : test::classic_bytes(azimuths), packet).ok());
+    return packet.clock_reference;
+  };
+  EXPECT_EQ(reference("robosense_helios32", difop_bytes(32, 4), 0), ClockReference::none);
+  EXPECT_EQ(reference("robosense_helios32", difop_bytes(32, 4), 1), ClockReference::gps);
+  EXPECT_EQ(reference("robosense_helios32", difop_bytes(32, 4), 2), ClockReference::ptp);
+  EXPECT_EQ(reference("robosense_helios32", difop_bytes(32, 4), 3), ClockReference::unknown);
+  EXPECT_EQ(reference("robosense_bpearl", test::bpearl_difop_bytes(1), 2), ClockReference::ptp);
+  EXPECT_EQ(reference("robosense_rs32", difop_bytes(32, 1), 0), ClockReference::unknown) << "not its clock's";
+}
+
 TEST(RobosenseDifop, AFileStandsInForThePacket) {
   const test::TempFolder folder;
   const LidarModel& model = *find_lidar_model("robosense_helios32");
-  auto decoder = make_lidar_decoder(model, {}, folder.file("difop.bin", text(difop_bytes(32, 4))));
+  auto old = difop_bytes(32, 4);
+  old[302] = 2;
+  auto decoder = make_lidar_decoder(model, {}, folder.file("difop.bin", text(old)));
   ASSERT_TRUE(decoder.ok());
   DecodedPacket packet;
   EXPECT_TRUE((*decoder)->decode(test::helios_bytes(block_azimuths(0, 20)), packet).ok());
+  EXPECT_EQ(packet.clock_reference, ClockReference::unknown) << "that was then";
 
   const auto error = [&](const std::filesystem::path& file) {
     auto made = make_lidar_decoder(model, {}, file);

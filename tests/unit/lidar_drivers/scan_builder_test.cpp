@@ -424,6 +424,24 @@ TEST(ScanBuilder, SensorTimeIsUsedWhileItAgreesWithTheHost) {
   }
 }
 
+TEST(ScanBuilder, AClockThatSaysItFollowsNothingIsNotUsedHoweverNearItIs) {
+  test::StreamOptions options{.model = "livox_mid360", .slots = 96, .packets = 100};
+  options.encoder.utc = options.start.time_since_epoch() + milliseconds(5);
+  auto stream = test::make_stream(options);
+  auto config = lidar();
+  config.model = options.model;
+  config.time_source = TimeSource::sensor;
+  constexpr std::size_t kTimeType = 11;
+  for (const bool synchronised : {true, false}) {
+    for (auto& packet : stream.packets) packet.bytes[kTimeType] = synchronised ? 1 : 0;  // PTP, nothing
+    auto builder = builder_for({config});
+    const auto scans = build(builder, stream.packets);
+    EXPECT_EQ(builder.status(0).clock_fault, !synchronised);
+    EXPECT_NEAR(to_milliseconds(builder.status(0).clock.offset), 5.0, 1e-3);
+    EXPECT_NEAR(to_milliseconds(scans[0].begin - options.start), synchronised ? 5.0 : 0.0, 1e-3);
+  }
+}
+
 TEST(ScanBuilder, StampsThatRunBackByAnHourStartANewGrid) {
   auto stream = test::make_stream({.packets = 200});
   test::StreamOptions earlier{.packets = 200, .seed = 5};

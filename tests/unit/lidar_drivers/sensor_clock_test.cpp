@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <tuple>
 
 namespace hulltrack {
 namespace {
@@ -91,6 +92,22 @@ TEST(SensorClock, DriftIsToldInPartsPerMillionEitherWay) {
   EXPECT_THAT(words(listen(milliseconds(3), 50e-6, seconds(90))), HasSubstr("and gains "));
   EXPECT_THAT(words(listen(milliseconds(3), -50e-6, seconds(90))), HasSubstr("and loses "));
   EXPECT_THAT(words(listen(seconds(37), 5e-6, seconds(30))), HasSubstr(" ppm: it runs on TAI"));
+}
+
+TEST(SensorClock, WhatFollowsNothingIsNearByChance) {
+  for (const auto& [reference, believed, says] :
+       {std::tuple{ClockReference::unknown, true, "behind this computer's"},
+        {ClockReference::ptp, true, "the sensor says that it follows PTP"},
+        {ClockReference::gps, true, "follows GPS"},
+        {ClockReference::pulse, true, "follows a pulse without a date"},
+        {ClockReference::none, false,
+         "behind this computer's; the sensor says that it is not synchronised"}}) {
+    SensorClock clock(Nanoseconds::zero());
+    clock.note(kNow.time_since_epoch(), kNow + milliseconds(1), reference);
+    EXPECT_EQ(clock.believed(), believed) << says;
+    EXPECT_EQ(clock.reading().believed(), believed) << says;
+    EXPECT_THAT(words(clock), HasSubstr(says));
+  }
 }
 
 TEST(SensorClock, OfAClockThatCountsAnHourOffsetsAreTakenModuloIt) {

@@ -97,6 +97,24 @@ TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
                         "PTP does, not on UTC; the time of reception is used instead"));
 }
 
+TEST_F(LidarWatchTest, TellsHowAClockThatFollowsNothingIsHelped) {
+  packet(seconds(1));
+  evidence.status.clock_fault = true;
+  evidence.status.clock.offset = milliseconds(-3);
+  evidence.status.clock.reference = ClockReference::none;
+  EXPECT_EQ(look(seconds(1)), fault::clock);
+  EXPECT_THAT(log.last(),
+              HasSubstr("its clock is 3.0 ms behind this computer's; the sensor says that it is not "
+                        "synchronised; the time of reception is used instead. Set up PTP or GPS on it"));
+  EXPECT_THAT(log.last(), Not(HasSubstr("fetch")));
+
+  LidarConfig config = boom();
+  config.model = "ouster_os";
+  LidarWatch ouster(config, 600.0, log, kStart);
+  ouster.update(evidence, kStart + seconds(1));
+  EXPECT_THAT(log.last(), HasSubstr("Set up PTP or GPS on it and fetch its metadata JSON again"));
+}
+
 TEST_F(LidarWatchTest, TellsOfAChangedReturnModeAndOfSectorsLeftOutOnce) {
   packet(seconds(1));
   evidence.status.return_mode = ReturnMode::dual;
