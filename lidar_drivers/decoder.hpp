@@ -95,9 +95,9 @@ class Decoder {
   [[nodiscard]] virtual DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                              DecodedPacket& out) const = 0;
 
-  /// Takes in a datagram by which the sensor tells about itself (RoboSense: DIFOP). False: it is none, or
-  /// one that no unit sends; nothing has changed then. True for a unit of another model: its data are
-  /// refused.
+  /// Takes in a datagram without points by which the sensor tells about itself: RoboSense's DIFOP, an IMU's
+  /// of which nothing is made. False: it is none, or one that no unit sends; nothing has changed then. True
+  /// for a unit of another model: its data are refused.
   virtual bool inform(std::span<const std::uint8_t> /*payload*/) { return false; }
 
   /// One clause for the log that names what was expected and what was seen.

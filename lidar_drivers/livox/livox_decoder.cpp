@@ -65,6 +65,13 @@ DecodeOutcome LivoxDecoder::decode(std::span<const std::uint8_t> payload, Decode
   return {};
 }
 
+bool LivoxDecoder::inform(std::span<const std::uint8_t> payload) {
+  const Generation& generation = *model_.generation;
+  if (payload.size() != generation.header + kImuBytes || payload[0] != generation.version) return false;
+  const bool sized = &generation == &kGeneration1 || read_le16(payload, kLengthOffset) == payload.size();
+  return sized && payload[generation.type_offset] == generation.imu_type;
+}
+
 DecodeOutcome LivoxDecoder::read_header(std::span<const std::uint8_t> payload, Header& header) const {
   const Generation& generation = *model_.generation;
   if (payload.size() < generation.header) return wrong_size(generation.header, payload.size());
@@ -146,8 +153,6 @@ std::string LivoxDecoder::explain(const DecodeOutcome& outcome) const {
       return format_text("expected protocol version %u of a Livox %s, saw %u", outcome.expected,
                          std::string(model_.title).c_str(), outcome.seen);
     case DecodeStatus::wrong_layout:
-      if (outcome.seen == model_.generation->imu_type)
-        return "expected points, saw the IMU's datagrams; send them to another port or switch them off";
       return format_text("expected a point data type of a Livox %s, saw 0x%02X",
                          std::string(model_.title).c_str(), outcome.seen);
     case DecodeStatus::bad_azimuth:

@@ -24,10 +24,11 @@ class LivoxDecoder final : public Decoder {
   LivoxDecoder(const ModelTable& model, const DecoderOptions& options) : model_(model), options_(options) {}
 
   /// wrong_product: the protocol's version is another (expected, seen: first byte); wrong_layout: a data type
-  /// that has no points here, the IMU's among them (seen: the type); bad_azimuth: an angle that cannot be
-  /// (seen: 0.01 deg).
+  /// that has no points here (seen: the type); bad_azimuth: an angle that cannot be (seen: 0.01 deg).
   [[nodiscard]] DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                      DecodedPacket& out) const override;
+  /// The IMU's datagrams, 200 a second from the factory, where a site gives points and IMU one port.
+  bool inform(std::span<const std::uint8_t> payload) override;
   [[nodiscard]] std::string explain(const DecodeOutcome& outcome) const override;
   [[nodiscard]] Nanoseconds clock_wrap() const override { return Nanoseconds::zero(); }
 

@@ -64,6 +64,8 @@ inline constexpr Nanoseconds kIntervalUnit{100};
 // Generation 1's header.
 inline constexpr std::uint8_t kStampIsDate = 3;  // year - 2000, month, day, hour u8, us of the hour u32 (UTC)
 
+inline constexpr std::size_t kImuBytes =
+    24;  // after the header: rotation rates and accelerations, six floats
 inline constexpr int kLargestTheta = 18'000;  // 0.01 deg
 inline constexpr int kLargestPhi = 36'000;
 

@@ -29,6 +29,8 @@ class OusterDecoder final : public Decoder {
   /// Columns that are marked invalid yield no point; one without any other is dated by all its columns.
   [[nodiscard]] DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                      DecodedPacket& out) const override;
+  /// The IMU's datagrams, where a site gives lidar and IMU one port.
+  bool inform(std::span<const std::uint8_t> payload) override { return payload.size() == kImuPacketBytes; }
   [[nodiscard]] std::string explain(const DecodeOutcome& outcome) const override;
   [[nodiscard]] Nanoseconds clock_wrap() const override { return Nanoseconds::zero(); }
 

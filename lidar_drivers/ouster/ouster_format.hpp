@@ -52,6 +52,10 @@ inline constexpr std::uint16_t kLidarPacket = 1;  // packet_type
 inline constexpr std::size_t kFrameIdOffset = 2;
 inline constexpr std::size_t kSerialOffset = 7;  // 40 bits
 
+/// The IMU's datagram (udp_profile_imu LEGACY, the only one before firmware 3.2): three stamps and six
+/// floats, no header (firmware manual, "IMU Data Legacy"). No lidar datagram is as small.
+inline constexpr std::size_t kImuPacketBytes = 48;
+
 // Header of a column.
 inline constexpr std::size_t kMeasurementIdOffset = 8;  // after the time stamp, ns
 inline constexpr std::size_t kColumnStatusOffset = 10;  // bit 0 = valid; LEGACY: in the column's footer

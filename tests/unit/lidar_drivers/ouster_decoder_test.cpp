@@ -258,6 +258,13 @@ TEST(OusterDecoder, AWindowsDatagramsAreCountedWithoutThoseLeftOut) {
   EXPECT_EQ(through_zero.counter->value, 3U * 15 + 13);
 }
 
+TEST(OusterDecoder, TheImusDatagramsAreItsOwnAndHoldNoPoints) {
+  auto decoder = decoder_of(Kind::single);
+  EXPECT_TRUE(decoder.inform(std::vector<std::uint8_t>(48)));
+  EXPECT_FALSE(decoder.inform(std::vector<std::uint8_t>(47)));
+  EXPECT_FALSE(decoder.inform(OusterBytes(Kind::single).bytes));
+}
+
 TEST(OusterDecoder, RefusalsNameWhatWasExpectedAndSeen) {
   const auto decoder = decoder_of(Kind::single);
   const OusterBytes good(Kind::single);

@@ -387,6 +387,20 @@ TEST(ScanBuilder, AnotherModelIsRefusedByName) {
             "expected VLP-16 (product code 0x22), saw VLP-32C (product code 0x28) from 0.0.0.0:0");
 }
 
+TEST(ScanBuilder, TheImusDatagramsOnThePointsPortAreNoForeignOnes) {
+  auto config = lidar();
+  config.model = "livox_mid360";
+  auto builder = builder_for({config});
+  std::vector<std::uint8_t> imu(60);
+  imu[1] = 60;  // its length; data type and protocol version are 0
+  Datagram datagram;
+  datagram.bytes = imu;
+  EXPECT_TRUE(builder.add(0, datagram).ok());
+  EXPECT_EQ(builder.status(0).informations, 1U);
+  EXPECT_EQ(builder.status(0).packets, 0U) << "a sensor that sends no points is silent";
+  EXPECT_EQ(builder.status(0).packets_rejected, 0U);
+}
+
 TEST(ScanBuilder, AChangeOfReturnModeIsCountedAndDecoded) {
   auto stream = test::make_stream({.packets = 50});
   test::StreamOptions later{.packets = 50};
