@@ -39,7 +39,8 @@ struct DecoderOptions {
   bool repeated_echoes = false;   // dual return: also emit the second of two identical echoes
 };
 
-/// The sensor's own count of datagrams.
+/// The sensor's own count of datagrams. One that stands still, as firmware that does not count leaves it, is
+/// recognised (packet_sequence.hpp).
 struct PacketCounter {
   std::uint64_t value;
   std::uint64_t wrap;  // it starts again at 0 after wrap - 1; > 0

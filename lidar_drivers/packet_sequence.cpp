@@ -76,7 +76,8 @@ bool PacketSequence::seen_before(std::span<const std::uint8_t> bytes) {
 std::uint32_t PacketSequence::lost_between(const DecodedPacket& packet, Nanoseconds elapsed) const {
   const Nanoseconds first_to_first = elapsed - packet.duration + newest_duration_;
   if (packet.interval <= Nanoseconds::zero() || first_to_first > kLongestLoss) return 0;
-  if (packet.counter && newest_counter_) {
+  const bool counted = packet.counter && newest_counter_ && packet.counter->value != newest_counter_->value;
+  if (counted) {
     const std::uint64_t wrap = packet.counter->wrap;
     const std::uint64_t steps = (packet.counter->value + wrap - newest_counter_->value % wrap) % wrap;
     // No more than the time has room for: a counter may begin again.

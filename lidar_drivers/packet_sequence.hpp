@@ -2,7 +2,7 @@
 //
 // Works on the sensor's own clock, which is exact to a microsecond where receive stamps jitter, and needs it
 // only to run evenly: a clock that is wrong, or starts again, is followed. What is missing the sensor's count
-// of datagrams tells where it has one, else the time between two of them. Sectors that the sensor
+// of datagrams tells where it has one that moves, else the time between two of them. Sectors that the sensor
 // itself leaves out are not taken for losses. Thread rule: one caller. Cost: one hash of the bytes.
 #pragma once
 

@@ -109,6 +109,7 @@ DecodeOutcome RobosenseDecoder::decode(std::span<const std::uint8_t> payload, De
   out.zero_crossing.reset();
   out.cut_azimuth.reset();
   out.counter.reset();
+  if (model_.tells_state) out.counter = PacketCounter{read_be32(payload, kCountOffset), kCountWrap};
   for (std::size_t g = 0; g < rotation.groups; ++g) {
     const bool has_next = g < last;
     if (has_next && rotation.jump[g]) out.cut_azimuth = centidegrees_to_rad(rotation.azimuth[g]);

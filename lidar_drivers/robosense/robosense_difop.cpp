@@ -108,7 +108,7 @@ Result<Difop> read_difop(Bytes payload, const ModelTable& model) {
   difop.mode_code = payload[kDifopReturnModeOffset];
   difop.mode = return_mode_of(model.family, difop.mode_code);
   difop.clock_reference =
-      model.tells_clock ? clock_reference_of(payload[kDifopClockOffset]) : ClockReference::unknown;
+      model.tells_state ? clock_reference_of(payload[kDifopClockOffset]) : ClockReference::unknown;
   return difop;
 }
 

@@ -1,8 +1,10 @@
 // RoboSense's data packet (MSOP) and the tables of the models that send it.
 //
 // 1248 bytes, big endian: a header of 42 (packet id, the sensor's clock at the first firing), 12 blocks of
-// {flag 0xFFEE, azimuth in 0.01 deg, 32 x {distance u16, intensity u8}}, a tail of 6. No count of datagrams
-// is documented. Which lasers the 32 slots of a block are:
+// {flag 0xFFEE, azimuth in 0.01 deg, 32 x {distance u16, intensity u8}}, a tail of 6. Bytes 12 to 15 count
+// the datagrams of a Helios (user manual, MSOP header: packets that the bottom board has sent; in the capture
+// 749 steps of 749 are +1) and of a Bpearl (Nebula's decoder); in the RS16's and RS32's manuals they are
+// reserved. Which lasers the 32 slots of a block are:
 //   32 lasers, single return   one firing of all lasers
 //   32 lasers, dual return     blocks come in pairs of one azimuth, first and second echo of one firing
 //   16 lasers, single return   two firings, the second one period after the first
@@ -10,7 +12,8 @@
 // Two models of a family differ in nothing that a data packet says: the unit's DIFOP packet tells them apart
 // (robosense_difop.hpp). Checked on a capture: Helios 32, single return. The other models' figures are the
 // maker's, without a capture to check them on; the Helios 16P's firing times are those of the maker's earlier
-// driver, the current one puts its second firing 27.68 us after the first, half of the period it states.
+// driver, the current one puts its second firing 27.68 us after the first, half of the period it states. The
+// unit's manual (6.2.2.3) has "~100 us" from block to block, hence some 50 us between firings, as here.
 // Thread rule: constants.
 #pragma once
 
@@ -25,7 +28,9 @@
 namespace hulltrack::robosense {
 
 inline constexpr std::size_t kPacketBytes = 1248;  // of data and of DIFOP packets
-inline constexpr std::size_t kClockOffset = 20;    // 10 bytes, see Family
+inline constexpr std::size_t kCountOffset = 12;    // u32, ModelTable::tells_state
+inline constexpr std::uint64_t kCountWrap = std::uint64_t{1} << 32;
+inline constexpr std::size_t kClockOffset = 20;  // 10 bytes, see Family
 inline constexpr std::size_t kHeaderBytes = 42;
 inline constexpr std::size_t kBlocks = 12;
 inline constexpr std::size_t kSlots = 32;  // returns in a block
@@ -53,7 +58,7 @@ struct ModelTable {
   std::string_view name;  // in the model registry
   std::string_view title;
   Family family;
-  bool tells_clock;      // its DIFOP packet says what the clock follows
+  bool tells_state;      // its data packets count themselves, its DIFOP packet says what the clock follows
   std::size_t lasers;    // 16 or 32
   bool to_zenith;        // they look up to the zenith, else to 15 deg at most
   double distance_unit;  // m

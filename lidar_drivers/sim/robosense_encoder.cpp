@@ -116,6 +116,7 @@ std::vector<std::uint8_t> RobosenseEncoder::encode(std::uint64_t packet,
   const bool classic = model_->family == Family::classic;
   write_be32(bytes, 0, classic ? robosense::kClassicId : robosense::kHeliosId);
   if (classic) write_be32(bytes, 4, robosense::kClassicIdRest);
+  if (model_->tells_state) write_be32(bytes, robosense::kCountOffset, static_cast<std::uint32_t>(packet));
   write_clock(std::span(bytes).subspan(robosense::kClockOffset, 10), config_.utc + first_firing(packet),
               model_->family);
   for (std::size_t block = 0; block < robosense::kBlocks; ++block) {
@@ -145,7 +146,7 @@ SensorInformation RobosenseEncoder::information() const {
   std::ranges::copy(robosense::kDifopId, bytes.begin());
   write_be16(bytes, robosense::kDifopRpmOffset, static_cast<std::uint16_t>(std::lround(config_.rpm)));
   bytes[robosense::kDifopReturnModeOffset] = mode_code(config_.return_mode, model_->family);
-  if (model_->tells_clock) bytes[robosense::kDifopClockOffset] = kPtp;
+  if (model_->tells_state) bytes[robosense::kDifopClockOffset] = kPtp;
   if (model_->family == Family::classic) {
     for (std::size_t k = 0; k < model_->lasers; ++k) {
       const std::size_t at = robosense::kDifopRs16VerticalOffset + k * robosense::kAngleBytes;

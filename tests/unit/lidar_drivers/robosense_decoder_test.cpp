@@ -191,6 +191,20 @@ TEST(RobosenseDecoder, SensorTimeIsThatOfTheLastFiring) {
             second + std::chrono::milliseconds(6) + std::chrono::microseconds(7) + packet.duration);
 }
 
+TEST(RobosenseDecoder, CountsDatagramsWhereTheModelDoes) {
+  const auto count = [](const char* model, const RobosenseBytes& difop, RobosenseBytes bytes) {
+    for (std::size_t i = 0; i < 4; ++i) bytes[12 + i] = static_cast<std::uint8_t>(i + 1);
+    return decode(model, difop, bytes).counter;
+  };
+  const auto helios = count("robosense_helios32", difop_bytes(32, 4), helios_bytes(block_azimuths(0, 20)));
+  ASSERT_TRUE(helios);
+  EXPECT_EQ(helios->value, 0x01020304U);
+  EXPECT_EQ(helios->wrap, std::uint64_t{1} << 32);
+  const auto azimuths = block_azimuths(0, 20);
+  EXPECT_TRUE(count("robosense_bpearl", test::bpearl_difop_bytes(1), classic_bytes(azimuths)));
+  EXPECT_FALSE(count("robosense_rs32", difop_bytes(32, 1), classic_bytes(azimuths))) << "reserved";
+}
+
 TEST(RobosenseDecoder, PairsOfBlocksHoldTwoEchoes) {
   auto bytes = helios_bytes(block_azimuths(1000, 20, 2));
   put_echo(bytes, 2, 17, 6000);

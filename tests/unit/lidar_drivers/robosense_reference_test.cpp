@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <random>
 
 #include "lidar_drivers/model_registry.hpp"
@@ -128,6 +129,27 @@ TEST(RobosenseReference, TheCaptureNamesItsUnitToASixteenLaserModel) {
   for (const auto& bytes : packets) static_cast<void>(decoder.inform(bytes));
   EXPECT_EQ(decoder.explain(decoder.decode(packets[0], packet)),
             "expected a unit of 16 lasers; this is a unit of 32 lasers: model = robosense_helios32?");
+}
+
+TEST(RobosenseReference, TheUnitCountsItsDatagrams) {
+  const auto packets = capture();
+  if (packets.empty()) GTEST_SKIP() << "no reference capture in " << folder();
+  const auto decoder = helios32();
+  DecodedPacket packet;
+  std::optional<std::uint64_t> before;
+  std::size_t steps = 0;
+  for (const auto& bytes : packets) {
+    if (decoder->inform(bytes)) continue;
+    ASSERT_TRUE(decoder->decode(bytes, packet).ok());
+    ASSERT_TRUE(packet.counter);
+    if (before) {
+      EXPECT_EQ(packet.counter->value, *before + 1);
+      ++steps;
+    }
+    before = packet.counter->value;
+  }
+  EXPECT_EQ(steps, 749U);
+  EXPECT_EQ(packet.clock_reference, ClockReference::none) << "its clock shows 2017";
 }
 
 TEST(RobosenseReference, CutPacketsAreRefused) {

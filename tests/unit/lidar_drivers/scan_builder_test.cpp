@@ -246,6 +246,27 @@ TEST(ScanBuilder, LossIsCountedFromTheSensorsClockAcrossTheHour) {
   EXPECT_EQ(lost_in_frames, dropped);
 }
 
+TEST(ScanBuilder, ACountThatStandsStillTellsNoLossTheClockDoes) {
+  test::StreamOptions options{.model = "livox_mid360", .slots = 96, .packets = 1000};
+  options.encoder.utc = options.start.time_since_epoch();
+  const auto stream = test::make_stream(options);
+  std::vector<test::StreamPacket> kept;
+  for (std::size_t i = 0; i < stream.packets.size(); ++i) {
+    if (i % 20 != 7) kept.push_back(stream.packets[i]);
+  }
+  auto config = lidar();
+  config.model = options.model;
+  constexpr std::size_t kCount = 7;
+  for (const bool counts : {true, false}) {
+    for (auto& packet : kept) {
+      if (!counts) packet.bytes[kCount] = packet.bytes[kCount + 1] = 0;
+    }
+    auto builder = builder_for({config});
+    static_cast<void>(build(builder, kept));
+    EXPECT_EQ(builder.status(0).packets_lost, 50U) << counts;
+  }
+}
+
 TEST(ScanBuilder, ASensorThatRestartsIsFollowedWithoutALoss) {
   auto before = test::make_stream({.packets = 200});
   test::StreamOptions later{.packets = 200, .seed = 2};
