@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/base/text.hpp"
 #include "daemon/tools/tools.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
@@ -21,14 +22,32 @@ std::string calibration_words(const LidarModel& model) {
   return "none";
 }
 
+/// A line of the table; 120 columns hold it.
+void line(const std::string& model, const std::string& maker, const std::string& name,
+          const std::string& lasers, const std::string& port, const std::string& information,
+          const std::string& range, const std::string& time, const std::string& clock,
+          const std::string& calibration) {
+  std::printf("%-19s %-9s %-13s %6s %5s %5s %5s  %-7s  %-8s  %s\n", model.c_str(), maker.c_str(),
+              name.c_str(), lasers.c_str(), port.c_str(), information.c_str(), range.c_str(), time.c_str(),
+              clock.c_str(), calibration.c_str());
+}
+
 void list_models() {
-  std::printf("%-20s %-10s %-12s %8s %6s %8s  %s\n", "model", "maker", "name", "channels", "port", "range/m",
-              "calibration file");
+  line("model", "maker", "name", "lasers", "port", "info", "range", "time", "clock by", "calibration file");
   for (const LidarModel& model : lidar_models()) {
-    std::printf("%-20s %-10s %-12s %8d %6u %8.0f  %s\n", std::string(model.name).c_str(),
-                std::string(model.vendor).c_str(), std::string(model.title).c_str(), model.channels,
-                unsigned{model.port}, model.range, calibration_words(model).c_str());
+    line(std::string(model.name), std::string(model.vendor), std::string(model.title),
+         std::to_string(model.channels), std::to_string(model.port),
+         model.information_port == 0 ? "-" : std::to_string(model.information_port),
+         format_text("%.0f m", model.range), model.time_source == TimeSource::receive ? "receive" : "sensor",
+         std::string(model.clock_by), calibration_words(model));
   }
+  std::printf(
+      "\n"
+      "port, info   UDP ports from the factory: points, and what the sensor tells about itself\n"
+      "time         recommended time_source: \"receive\" needs no synchronisation and is as good as 0.1 mm "
+      "at the\n"
+      "             boom's tip on a quiet network; \"sensor\" needs the sensor's clock set by what `clock "
+      "by` names\n");
 }
 
 }  // namespace

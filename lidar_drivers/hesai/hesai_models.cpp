@@ -17,7 +17,8 @@ std::vector<LidarModel> lidar_models() {
          .range = table.range,
          .channels = static_cast<int>(table.lasers),
          .calibration = LidarModel::Calibration::optional,
-         .calibration_file = "the unit's angle correction CSV",
+         .calibration_file = "angle correction CSV",
+         .clock_by = "PTP, GPS",
          .make_decoder = [&table](const DecoderOptions& options,
                                   const std::filesystem::path& file) -> Result<std::unique_ptr<Decoder>> {
            const auto angles = load_angles(file, table);

@@ -51,9 +51,9 @@ std::span<const ModelTable> models() {
   // 200,000, 452,000 and 240,000 shots a second. An Avia's host picks the port when it sets the sensor up, so
   // its figure is no more than a proposal.
   static constexpr ModelTable kModels[] = {
-      {"livox_mid360", "Mid-360", &kGeneration2, 56301, 70.0, 4, Nanoseconds(5000), false},
-      {"livox_hap", "HAP", &kGeneration2, 57000, 150.0, 6, Nanoseconds(2212), true},
-      {"livox_avia", "Avia", &kGeneration1, 56001, 320.0, 6, Nanoseconds(4167), true},
+      {"livox_mid360", "Mid-360", "PTP, GPS", &kGeneration2, 56301, 70.0, 4, Nanoseconds(5000), false},
+      {"livox_hap", "HAP", "PTP", &kGeneration2, 57000, 150.0, 6, Nanoseconds(2212), true},
+      {"livox_avia", "Avia", "PTP, GPS", &kGeneration1, 56001, 320.0, 6, Nanoseconds(4167), true},
   };
   return kModels;
 }

@@ -42,6 +42,7 @@ struct Generation {
 struct ModelTable {
   std::string_view name;  // in the model registry
   std::string_view title;
+  std::string_view clock_by;  // as LidarModel's
   const Generation* generation;
   std::uint16_t port;        // of the host
   double range;              // m

@@ -15,6 +15,7 @@ std::vector<LidarModel> lidar_models() {
                     .range = table.range,
                     .channels = table.lines,
                     .rotates = false,
+                    .clock_by = table.clock_by,
                     .make_decoder = [&table](const DecoderOptions& options, const std::filesystem::path&)
                         -> Result<std::unique_ptr<Decoder>> {
                       return std::unique_ptr<Decoder>(std::make_unique<LivoxDecoder>(table, options));

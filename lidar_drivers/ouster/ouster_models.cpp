@@ -39,6 +39,7 @@ std::vector<LidarModel> lidar_models() {
            .channels = 128,
            .calibration = LidarModel::Calibration::required,
            .calibration_file = "metadata JSON",
+           .clock_by = "PTP, GPS",
            .make_decoder = make,
            .looks_like = looks_like}};
 }

@@ -46,16 +46,16 @@ constexpr Pulses bpearl_pulses() {
 }
 
 constexpr std::array<ModelTable, 5> kModels = {{
-    {"robosense_rs16", "RS-LiDAR-16", Family::classic, false, 16, false, 0.005, 230.0, 0.03825, 0.0,
+    {"robosense_rs16", "RS-LiDAR-16", Family::classic, false, "GPS", 16, false, 0.005, 230.0, 0.03825, 0.0,
      Nanoseconds(55500), even_pulses(16, Nanoseconds(2800))},
-    {"robosense_rs32", "RS-LiDAR-32", Family::classic, false, 32, false, 0.005, 230.0, 0.03997, 0.0,
+    {"robosense_rs32", "RS-LiDAR-32", Family::classic, false, "GPS", 32, false, 0.005, 230.0, 0.03997, 0.0,
      Nanoseconds(55520), rs32_pulses()},
-    {"robosense_helios32", "RS-Helios-32", Family::helios, true, 32, false, 0.0025, 180.0, 0.03498, 0.0,
-     Nanoseconds(55560), even_pulses(32, Nanoseconds(1730))},
-    {"robosense_helios16p", "RS-Helios-16P", Family::helios, true, 16, false, 0.0025, 180.0, 0.03498, 0.0,
-     Nanoseconds(55560), helios16p_pulses()},
-    {"robosense_bpearl", "RS-Bpearl", Family::classic, true, 32, true, 0.005, 150.0, 0.01473, 0.09427,
-     Nanoseconds(55520), bpearl_pulses()},
+    {"robosense_helios32", "RS-Helios-32", Family::helios, true, "PTP, GPS", 32, false, 0.0025, 180.0,
+     0.03498, 0.0, Nanoseconds(55560), even_pulses(32, Nanoseconds(1730))},
+    {"robosense_helios16p", "RS-Helios-16P", Family::helios, true, "PTP, GPS", 16, false, 0.0025, 180.0,
+     0.03498, 0.0, Nanoseconds(55560), helios16p_pulses()},
+    {"robosense_bpearl", "RS-Bpearl", Family::classic, true, "PTP, GPS", 32, true, 0.005, 150.0, 0.01473,
+     0.09427, Nanoseconds(55520), bpearl_pulses()},
 }};
 
 }  // namespace

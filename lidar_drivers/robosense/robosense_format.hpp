@@ -58,14 +58,15 @@ struct ModelTable {
   std::string_view name;  // in the model registry
   std::string_view title;
   Family family;
-  bool tells_state;      // its data packets count themselves, its DIFOP packet says what the clock follows
-  std::size_t lasers;    // 16 or 32
-  bool to_zenith;        // they look up to the zenith, else to 15 deg at most
-  double distance_unit;  // m
-  double range;          // m
-  double lens_forward;   // m, the lens ahead of the rotor's axis: turns with it
-  double lens_up;        // m, the lens above L's origin
-  Nanoseconds period;    // one firing of all lasers to the next
+  bool tells_state;  // its data packets count themselves, its DIFOP packet says what the clock follows
+  std::string_view clock_by;  // as LidarModel's
+  std::size_t lasers;         // 16 or 32
+  bool to_zenith;             // they look up to the zenith, else to 15 deg at most
+  double distance_unit;       // m
+  double range;               // m
+  double lens_forward;        // m, the lens ahead of the rotor's axis: turns with it
+  double lens_up;             // m, the lens above L's origin
+  Nanoseconds period;         // one firing of all lasers to the next
   std::array<Nanoseconds, kSlots>
       pulse;  // of each laser after its firing's first; the first `lasers` of them
 };

@@ -51,6 +51,7 @@ std::vector<LidarModel> lidar_models() {
          .calibration = LidarModel::Calibration::optional,
          .calibration_file = "DIFOP packet",
          .information_port = 7788,
+         .clock_by = table.clock_by,
          .make_decoder = [&table](const DecoderOptions& options, const std::filesystem::path& calibration) {
            return make_decoder(table, options, calibration);
          }});

@@ -14,6 +14,7 @@ std::vector<LidarModel> lidar_models() {
                     .port = 2368,
                     .range = table.range,
                     .channels = table.channels,
+                    .clock_by = "GPS",
                     .make_decoder = [&table](const DecoderOptions& options, const std::filesystem::path&)
                         -> Result<std::unique_ptr<Decoder>> {
                       return std::unique_ptr<Decoder>(std::make_unique<VelodyneDecoder>(table, options));

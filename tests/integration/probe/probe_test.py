@@ -58,6 +58,14 @@ def check_live(tool, folder):
     print("a sensor and a PLC recognised live")
 
 
+def check_models(tool):
+    listed = run(tool, "models")
+    assert listed.returncode == 0, listed.stderr
+    assert max(map(len, listed.stdout.splitlines())) <= 120, listed.stdout
+    row = next(line for line in listed.stdout.splitlines() if line.startswith("robosense_helios32"))
+    assert re.search(r"6699 +7788 +180 m +receive +PTP, GPS +DIFOP packet \(optional\)", row), row
+
+
 def check_nothing(tool, folder):
     silent = run(tool, "probe", "--port", free_port(socket.SOCK_DGRAM), "--seconds", 0.2)
     assert silent.returncode == 1 and "nothing arrived on UDP port" in silent.stderr, silent.stderr
@@ -74,6 +82,7 @@ def main():
     tool = sys.argv[1]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        check_models(tool)
         check_nothing(tool, folder)
         check_captures(tool, folder)
         check_live(tool, folder)
