@@ -2,7 +2,9 @@
 //
 // A sensor that was never told the time shows any date. One that is none counts as 1970-01-01, so that the
 // clock still runs evenly, which is what telling lost datagrams needs; as a time it is refused further up,
-// being far from the host's. Thread rule: pure functions.
+// being far from the host's. The maker's SDK 2.0 differs from the manuals: it reads a year below 100 as since
+// 2000 whatever the model, and a year 0 as four bytes of seconds since 1970. Neither is followed; a unit that
+// sends such dates is years off here, so that the time of reception is used. Thread rule: pure functions.
 #pragma once
 
 #include <cstdint>

@@ -5,8 +5,9 @@
 // is {distance u16, reflectivity u8}, of most models with a fourth byte that is not used. With n returns a
 // firing n blocks in a row carry one azimuth, and repeat each other where there was only one return.
 // Source: user manuals of the PandarXT, XT-16, XT32M2X, Pandar40P, Pandar64 and PandarQT; figures that they
-// leave to a unit's files (angles, firing times) from the files that the maker publishes.
-// Thread rule: constants.
+// leave to a unit's files (angles, firing times) from the files that the maker publishes. The tails of
+// Pandar40P, Pandar64 (22 bytes, 26 with the sequence number, never a signature) and PandarQT are those of
+// the maker's SDK 2.0 as well. Thread rule: constants.
 #pragma once
 
 #include <array>

@@ -4,9 +4,10 @@
 // angle but where its return lies. (0, 0, 0) is a shot without a return, or one that the sensor's own field
 // of view leaves out. Shots are spread evenly from the header's time stamp on. Generation 2 gives the time
 // from the first to the last shot (Mid-360: 475.0 us for 96 shots 5 us apart); generation 1 gives none, its
-// rate is the model's. Shot i is fired by laser i mod the number of lasers. Tags: HAP and Avia mark what is
-// "noise with high confidence" by its place (bits 0-1 = 1): dropped. Weaker doubt, and the doubt for a weak
-// return (bits 2-3), which wet or dark steel has too, is not acted on. The Mid-360's manual grades how far a
+// rate is the model's. Shot i is fired by laser i mod the number of lasers. Tags, bits 0-1, by a return's
+// place: 1 high, 2 moderate, 3 low confidence level of noise (HAP user manual, "Point Cloud Data"; Avia by
+// the manuals of its generation). HAP and Avia: 1 is dropped. Weaker doubt, and the doubt for a weak return
+// (bits 2-3), which wet or dark steel has too, is not acted on: kept. The Mid-360's manual grades how far a
 // point is to be trusted and calls none noise for sure: all are kept. Of several echoes the farthest is the
 // last one, echo 0. Single return may be set to the strongest or the first, which the datagram does not tell:
 // ReturnMode::unknown. Cost: some microseconds a datagram of 96 points.

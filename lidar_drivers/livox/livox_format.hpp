@@ -2,7 +2,10 @@
 //
 // Little endian, packed: a header, then records of one kind. A record is one laser shot: an echo, or with
 // dual and triple return two or three. An echo is x, y, z (or a depth), reflectivity and, mostly, a tag.
-// Source: Livox's communication protocols (SDK 1, SDK 2) and the models' user manuals.
+// Source: Livox's communication protocols (SDK 1, SDK 2) and the models' user manuals; kinds and sizes of
+// generation 1 agree with SDK 1's livox_def.h and the sizes that users of it state.
+// A stamp type of PTP is no proof of the time: a Mid-360 in PTP mode that has not locked yet has been seen to
+// stamp with the time since power-on.
 // Thread rule: constants.
 #pragma once
 
