@@ -5,23 +5,13 @@ import csv
 import math
 import pathlib
 import struct
-import subprocess
 import sys
 import tempfile
 
+from decode_tool import datagrams, decode
+
 ELEVATION = [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15]
 FIRING_NS, SEQUENCE_NS, BLOCK_NS = 2304, 55296, 110592
-
-
-def datagrams(capture):
-    """(ns, payload) of a little-endian microsecond pcap of Ethernet/IPv4/UDP without options."""
-    data = capture.read_bytes()
-    assert struct.unpack_from("<I", data)[0] == 0xA1B2C3D4
-    at = 24
-    while at < len(data):
-        seconds, micros, size, _ = struct.unpack_from("<IIII", data, at)
-        yield seconds * 10**9 + micros * 1000, data[at + 16 + 42:at + 16 + size]
-        at += 16 + size
 
 
 def expected_rows(capture, firing_correction=True):
@@ -52,10 +42,6 @@ def compare(rows, expected):
         count += 1
     assert worst < 2e-5, worst  # float against double at 100 m
     return count, worst
-
-
-def decode(tool, *arguments):
-    return subprocess.run([tool, "decode", *map(str, arguments)], capture_output=True, text=True, timeout=120)
 
 
 def check_capture(tool, capture, folder):
