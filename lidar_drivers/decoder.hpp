@@ -2,8 +2,9 @@
 //
 // Frame: L is x forward (zero azimuth), y left, z up, metres. Times are offsets to the datagram's LAST
 // firing, hence never positive. A decoder keeps nothing of one data datagram for the next and checks every
-// byte: bad input gives an outcome with figures, never an exception. What a sensor says about itself in
-// datagrams of their own goes through inform(). Thread rule: one caller at a time.
+// byte: bad input gives an outcome with figures, never an exception. Points are as far away as the bytes say;
+// the scan builder keeps to the model's range. What a sensor says about itself in datagrams of their own goes
+// through inform(). Thread rule: one caller at a time.
 // Cost: a datagram of 384 returns takes a few microseconds; nothing is allocated once `out` has grown.
 #pragma once
 

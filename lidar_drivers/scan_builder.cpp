@@ -36,6 +36,7 @@ Result<ScanBuilder> ScanBuilder::create(const std::vector<LidarConfig>& lidars,
     if (!decoder) return Error{"lidar \"" + config.name + "\": " + decoder.error().message};
     const Nanoseconds wrap = decoder.value()->clock_wrap();
     Lidar lidar{.config = config,
+                .range = model->range,
                 .decoder = std::move(decoder).value(),
                 .sequence = PacketSequence(wrap),
                 .clock = SensorClock(wrap)};
@@ -70,6 +71,7 @@ DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
   const PacketSequence::Step step = lidar.sequence.note(datagram.bytes, packet_, datagram.received);
   note_sequence(index, step);
   if (step.place == PacketSequence::Place::duplicate) return outcome;
+  drop_out_of_range(lidar);
 
   MeasurementTime last = host_or_sensor_time(lidar, packet_, datagram);
   if (step.place == PacketSequence::Place::out_of_order) {
@@ -88,6 +90,19 @@ DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
   lidar.status.points_late += refused.late;
   lidar.status.points_over_limit += refused.over_limit;
   return outcome;
+}
+
+/// Every wire format can say distances that its sensor does not measure (a VLP-16's 131 m, an Ouster's 1,049
+/// m, a Livox's thousands of kilometres): there stand damaged bytes, or returns of which the maker states no
+/// accuracy. Counted from L's origin, some centimetres beside the optical one. NaN is out of range too.
+void ScanBuilder::drop_out_of_range(Lidar& lidar) {
+  const double most = lidar.range * lidar.range;
+  lidar.status.points_out_of_range += std::erase_if(packet_.points, [&](const LidarPoint& point) {
+    const double x = point.x;
+    const double y = point.y;
+    const double z = point.z;
+    return !(x * x + y * y + z * z <= most);
+  });
 }
 
 void ScanBuilder::note_sequence(std::size_t index, const PacketSequence::Step& step) {

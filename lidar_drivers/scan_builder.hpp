@@ -35,8 +35,9 @@ struct LidarStatus {
   std::uint64_t packets_lost = 0;       // missing between the sensor's time stamps
   std::uint64_t packets_duplicate = 0;  // the same bytes again: dropped
   std::uint64_t packets_out_of_order = 0;
-  std::uint64_t points_late = 0;        // their frame had been handed out: dropped
-  std::uint64_t points_over_limit = 0;  // beyond kMaxLidarPoints: dropped
+  std::uint64_t points_late = 0;          // their frame had been handed out: dropped
+  std::uint64_t points_over_limit = 0;    // beyond kMaxLidarPoints: dropped
+  std::uint64_t points_out_of_range = 0;  // farther than the model measures: dropped
   std::uint64_t return_mode_changes = 0;
   std::uint64_t clock_restarts = 0;  // the sensor's clock jumped: reboot, or time synchronisation
   ReturnMode return_mode = ReturnMode::unknown;
@@ -92,6 +93,7 @@ class ScanBuilder {
   };
   struct Lidar {
     LidarConfig config;
+    double range = 0.0;  // m, the model's
     std::unique_ptr<Decoder> decoder;
     PacketSequence sequence;
     SensorClock clock;
@@ -111,6 +113,7 @@ class ScanBuilder {
   [[nodiscard]] static MeasurementTime host_or_sensor_time(Lidar& lidar, const DecodedPacket& packet,
                                                            const Datagram& datagram);
   [[nodiscard]] std::optional<MeasurementTime> zero_crossing(const Lidar& lidar, MeasurementTime last) const;
+  void drop_out_of_range(Lidar& lidar);
 
   Framing framing_;
   std::vector<Lidar> lidars_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/se3.hpp"
+#include "lidar_drivers/bytes.hpp"
 #include "lidar_drivers/scan_builder.hpp"
 #include "tests/support/velodyne_bytes.hpp"
 #include "tests/support/velodyne_stream.hpp"
@@ -557,6 +559,27 @@ TEST(ScanBuilder, CreationRefusesWhatItCannotRun) {
   const auto unknown = ScanBuilder::create({lidar("velodyne_vlp17")}, {});
   ASSERT_FALSE(unknown.ok());
   EXPECT_NE(unknown.error().message.find("velodyne_vlp17"), std::string::npos);
+}
+
+TEST(ScanBuilder, PointsFartherThanTheModelMeasuresAreDroppedAndCounted) {
+  auto stream = test::make_stream({.packets = 1});
+  auto& bytes = stream.packets[0].bytes;
+  for (std::size_t block = 0; block < 12; ++block) {
+    for (std::size_t slot = 0; slot < 32; ++slot) write_le16(bytes, 100 * block + 4 + 3 * slot, 0);
+  }
+  // A VLP-16 measures 100 m, in steps of 2 mm. Slot 1: its laser's height above the centre takes 12 um off.
+  const auto put = [&](std::size_t block, unsigned raw) {
+    write_le16(bytes, 100 * block + 4 + 3, static_cast<std::uint16_t>(raw));
+  };
+  put(0, 50'000);
+  put(1, 50'001);
+  put(2, 65'535);
+  auto builder = builder_for({lidar()});
+  const auto scans = build(builder, stream.packets);
+  ASSERT_EQ(scans.size(), 1U);
+  ASSERT_EQ(scans[0].points.size(), 1U);
+  EXPECT_NEAR(std::hypot(scans[0].points[0].x, scans[0].points[0].y), 100.0 * std::cos(radians(1.0)), 1e-4);
+  EXPECT_EQ(builder.status(0).points_out_of_range, 2U);
 }
 
 }  // namespace
