@@ -51,6 +51,10 @@ Nanoseconds read_clock(Bytes payload, Family family) {
          std::chrono::milliseconds(read_be16(c, 6)) + std::chrono::microseconds(read_be16(c, 8));
 }
 
+bool same_lasers(const Difop& a, const Difop& b) {
+  return std::ranges::equal(std::span(a.angles).first(a.lasers), std::span(b.angles).first(b.lasers));
+}
+
 std::string unit_of(std::size_t lasers, bool to_zenith) {
   return "a unit of " + std::to_string(lasers) + " lasers" + (to_zenith ? " up to the zenith" : "");
 }
@@ -77,6 +81,14 @@ bool RobosenseDecoder::inform(std::span<const std::uint8_t> payload) {
 }
 
 void RobosenseDecoder::inform(const Difop& unit) {
+  const bool known = unit_ && same_lasers(*unit_, unit);
+  const bool again = told_ && same_lasers(*told_, unit);
+  told_ = unit;
+  if (unit_ && !known && !again) {
+    if (!confirmed_) unit_.reset();
+    return;
+  }
+  confirmed_ = known || again;
   unit_ = unit;
   for (std::size_t k = 0; k < model_.lasers; ++k) {
     const double elevation = radians(unit_->angles[k].elevation_deg);

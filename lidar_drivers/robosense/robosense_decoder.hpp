@@ -27,6 +27,9 @@ class RobosenseDecoder final : public Decoder {
   [[nodiscard]] DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                      DecodedPacket& out) const override;
   /// A unit of another model is taken in too, as far as can be told: its data are refused from then on.
+  /// A unit's angles never change and its packet has no checksum: where two packets differ, one was damaged
+  /// on its way or the unit was exchanged. Angles that two packets agreed on stay until two others agree;
+  /// those of a single packet are given up, and data are held back until the next one.
   bool inform(std::span<const std::uint8_t> payload) override;
   /// The same of a DIFOP packet that was read already.
   void inform(const Difop& unit);
@@ -50,6 +53,8 @@ class RobosenseDecoder final : public Decoder {
   DecoderOptions options_;
   Nanoseconds last_pulse_{};  // of a firing, after its first
   std::optional<Difop> unit_;
+  std::optional<Difop> told_;  // by the newest packet
+  bool confirmed_ = false;     // unit_'s angles stood in two packets
   std::array<Beam, kSlots> beams_{};
 };
 

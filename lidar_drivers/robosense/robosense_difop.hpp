@@ -41,6 +41,7 @@ inline constexpr std::size_t kAngleBytes = 3;
 struct LaserAngles {
   double elevation_deg;
   double azimuth_deg;  // to be added to the rotor's azimuth
+  friend bool operator==(const LaserAngles&, const LaserAngles&) = default;
 };
 
 struct Difop {

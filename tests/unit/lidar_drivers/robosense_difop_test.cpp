@@ -42,7 +42,33 @@ TEST(RobosenseDifop, DataWaitForTheAnglesAndFollowThem) {
   EXPECT_NEAR(after(decoder, difop_bytes(32, 4)).second, 10.0, 1e-4);
   auto other = difop_bytes(32, 4);
   put_angle(other, test::kVertical, 0, 1234);
+  decoder.inform(other);
   EXPECT_NEAR(after(decoder, other).second, 12.34, 1e-4);
+}
+
+TEST(RobosenseDifop, OneDamagedPacketAmongTheUnitsTurnsNoLaser) {
+  const auto good = difop_bytes(32, 4);
+  auto damaged = good;
+  damaged[test::kVertical + 1] ^= 0x08;  // laser 0: by 20.48 deg
+  const auto other_unit = [&] {
+    auto difop = good;
+    put_angle(difop, test::kVertical, 0, 1050);
+    return difop;
+  }();
+  RobosenseDecoder decoder(*robosense::find_model("robosense_helios32"), {});
+  // Of two packets that differ nobody knows which one was damaged: the third tells.
+  EXPECT_NEAR(after(decoder, damaged).second, 30.48, 1e-4);
+  EXPECT_EQ(after(decoder, good).first, DecodeStatus::awaiting_angles);
+  EXPECT_NEAR(after(decoder, good).second, 10.0, 1e-4);
+  // From then on a single one changes nothing, wherever it comes.
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(after(decoder, damaged).second, 10.0, 1e-4);
+    EXPECT_NEAR(after(decoder, good).second, 10.0, 1e-4);
+  }
+  // Another unit in its place is believed at its second packet.
+  EXPECT_NEAR(after(decoder, other_unit).second, 10.0, 1e-4);
+  EXPECT_NEAR(after(decoder, other_unit).second, 10.5, 1e-4);
+  EXPECT_NEAR(after(decoder, damaged).second, 10.5, 1e-4);
 }
 
 TEST(RobosenseDifop, AnglesThatNoUnitHasChangeNothing) {
