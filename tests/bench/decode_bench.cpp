@@ -3,40 +3,17 @@
 // Prints for each the points a second that the sensor sends, the time a point, and the share of one core that
 // decoding takes, alone and with all that the receiving thread does to make scans of it. Usage: bench_decode
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <string>
 #include <vector>
 
 #include "lidar_drivers/model_registry.hpp"
 #include "lidar_drivers/scan_builder.hpp"
-#include "lidar_drivers/sim/encoder_registry.hpp"
+#include "tests/bench/sensor_streams.hpp"
 #include "tests/bench/stopwatch.hpp"
-#include "tests/support/temp_folder.hpp"
 
 namespace hulltrack {
 namespace {
-
-struct Stream {
-  std::vector<std::vector<std::uint8_t>> datagrams;
-  std::vector<Nanoseconds> sent;
-  Nanoseconds length{};
-  sim::SensorInformation information;
-};
-
-/// A second of a sensor for which everything is 10 m away.
-Stream stream_of(const sim::LidarEncoder& encoder, std::size_t echoes) {
-  Stream stream{.length = std::chrono::seconds(1), .information = encoder.information()};
-  for (std::uint64_t n = 0; encoder.first_firing(n) < stream.length; ++n) {
-    std::vector<sim::LaserReturn> returns(echoes * encoder.firings_per_packet());
-    for (std::size_t i = 0; i < returns.size(); ++i) returns[i] = {i % 2 == 0 ? 10.0 : 8.0, 100};
-    stream.datagrams.push_back(encoder.encode(n, returns));
-    stream.sent.push_back(encoder.last_firing(n));
-  }
-  return stream;
-}
 
 /// Median of nine, CPU seconds.
 template <typename Work>
@@ -51,18 +28,10 @@ double seconds_of(Work&& work) {
   return times[4];
 }
 
-void measure(const LidarModel& model, ReturnMode mode) {
-  const auto encoder = sim::make_lidar_encoder(model.name, {.return_mode = mode});
-  if (!encoder) return;
-  const Stream stream = stream_of(**encoder, mode == ReturnMode::dual ? 2 : 1);
-  const test::TempFolder folder;
-  LidarConfig config{.model = std::string(model.name)};
-  if (!stream.information.calibration_name.empty()) {
-    config.calibration = (folder.path() / stream.information.calibration_name).string();
-    std::ofstream(config.calibration) << stream.information.calibration;
-  }
-  auto decoder = make_lidar_decoder(model, {}, config.calibration).value();
-  decoder->inform(stream.information.datagram);
+void measure(const bench::SensorStream& stream) {
+  const LidarConfig& config = stream.config;
+  auto decoder = make_lidar_decoder(*find_lidar_model(config.model), {}, config.calibration).value();
+  decoder->inform(stream.information);
   DecodedPacket packet;
   std::size_t points = 0;
   const double decoding = seconds_of([&] {
@@ -72,21 +41,23 @@ void measure(const LidarModel& model, ReturnMode mode) {
       points += packet.points.size();
     }
   });
-  const double receiving = seconds_of([&] {
-    auto builder = ScanBuilder::create({config}, {}).value();
-    builder.add(0, {.bytes = stream.information.datagram});
-    Scan scan;
+  auto builder = ScanBuilder::create({config}, {}).value();
+  builder.add(0, {.bytes = stream.information});
+  Scan scan;
+  MeasurementTime second{};
+  const double receiving = seconds_of([&] {  // its buffers have grown after the first second
     for (std::size_t i = 0; i < stream.datagrams.size(); ++i) {
-      builder.add(0, {.bytes = stream.datagrams[i], .received = MeasurementTime{stream.sent[i]}});
+      builder.add(0, {.bytes = stream.datagrams[i], .received = second + stream.sent[i]});
       while (builder.take(scan)) {
       }
     }
+    second += bench::kStreamLength;
   });
-  const double length = to_seconds(stream.length);
-  std::printf("%-20s %-10s %10.0f %8.1f %8.2f %% %8.2f %%\n", std::string(model.name).c_str(),
-              return_mode_name(mode), static_cast<double>(points) / length,
-              1e9 * decoding / static_cast<double>(points), 100.0 * decoding / length,
-              100.0 * receiving / length);
+  const double length = to_seconds(bench::kStreamLength);
+  std::printf("%-26s %10.0f %8.1f %8.2f %% %8.2f %%\n", stream.title.c_str(),
+              static_cast<double>(points) / length, 1e9 * decoding / static_cast<double>(points),
+              100.0 * decoding / length, 100.0 * receiving / length);
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -94,10 +65,6 @@ void measure(const LidarModel& model, ReturnMode mode) {
 
 int main() {
   using namespace hulltrack;
-  std::printf("%-20s %-10s %10s %8s %10s %10s\n", "model", "returns", "points/s", "ns/point", "decoding",
-              "receiving");
-  for (const LidarModel& model : lidar_models()) {
-    measure(model, ReturnMode::strongest);
-    measure(model, ReturnMode::dual);
-  }
+  std::printf("%-26s %10s %8s %10s %10s\n", "model", "points/s", "ns/point", "decoding", "receiving");
+  bench::for_each_sensor_stream(measure);
 }
