@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
+#include <span>
 #include <utility>
 
 namespace hulltrack {
@@ -18,6 +20,15 @@ constexpr Nanoseconds kClockStep = std::chrono::seconds(2);
 constexpr std::size_t kFinishedKept = 4;
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+/// The segment of `points`, which are some of those of `whole`; their times are made to count from its
+/// middle.
+ScanSegment centred(const ScanSegment& whole, std::span<LidarPoint> points, std::uint32_t first) {
+  const auto [earliest, latest] = std::ranges::minmax(points, {}, &LidarPoint::dt_ns);
+  const std::int32_t middle = earliest.dt_ns + (latest.dt_ns - earliest.dt_ns) / 2;
+  for (LidarPoint& point : points) point.dt_ns -= middle;
+  return {whole.time + Nanoseconds(middle), first, static_cast<std::uint32_t>(points.size()), whole.lidar};
+}
 
 }  // namespace
 
@@ -61,6 +72,38 @@ void FrameAssembler::cut(MeasurementTime boundary) {
   if (boundary <= current_.scan.begin || next_.used) return;
   current_.scan.end = boundary;
   open_next();
+  hand_on();
+}
+
+/// Another LiDAR may have been ahead of the one that tells where a turn ends: what it measured after the end
+/// goes from the current frame to the next one.
+void FrameAssembler::hand_on() {
+  Scan& scan = current_.scan;
+  if (!current_.used || scan.last_firing < scan.end) return;
+  next_.used = true;
+  next_.scan.first_firing = scan.end;
+  next_.scan.last_firing = std::exchange(scan.last_firing, scan.end - Nanoseconds(1));
+  const std::vector<ScanSegment> segments = std::exchange(scan.segments, {});
+  const std::vector<LidarPoint> points = std::exchange(scan.points, {});
+  for (const ScanSegment& segment : segments) {
+    const auto all = std::span(points).subspan(segment.first, segment.count);
+    for (Scan* to : {&current_.scan, &next_.scan}) {
+      const auto begin = static_cast<std::uint32_t>(to->points.size());
+      std::ranges::copy_if(all, std::back_inserter(to->points), [&](const LidarPoint& point) {
+        return (segment.time + Nanoseconds(point.dt_ns) < scan.end) == (to == &scan);
+      });
+      const auto count = static_cast<std::uint32_t>(to->points.size()) - begin;
+      if (count > 0) to->segments.push_back(centred(segment, std::span(to->points).subspan(begin), begin));
+      LidarFrameCounters& counters = to->lidars[segment.lidar];
+      if (to == &scan) {
+        counters.packets -= count == 0 ? 1 : 0;
+        counters.points -= segment.count - count;
+      } else {
+        counters.packets += count == 0 ? 0 : 1;
+        counters.points += count;
+      }
+    }
+  }
 }
 
 FrameAssembler::Refused FrameAssembler::place(std::size_t lidar, const DecodedPacket& packet,

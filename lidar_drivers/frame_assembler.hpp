@@ -67,6 +67,7 @@ class FrameAssembler {
 
   void start(MeasurementTime begin, std::int64_t number);
   void open_next();
+  void hand_on();
   void make_room(MeasurementTime first);
   std::uint32_t place_in(Frame& frame, std::size_t lidar, const DecodedPacket& packet, MeasurementTime last);
   void close_current();

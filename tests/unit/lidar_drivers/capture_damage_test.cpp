@@ -124,7 +124,7 @@ class CaptureDamage : public testing::TestWithParam<Capture> {
     DecodedPacket packet;
     Scan scan;
     const auto take_all = [&] {
-      while (builder->take(scan)) add_points(scan, framing, outcome);
+      while (builder->take(scan)) add_points(scan, outcome);
     };
     for (const Sent& sent : datagrams) {
       const std::uint64_t duplicates = builder->status(0).packets_duplicate;
@@ -163,16 +163,14 @@ class CaptureDamage : public testing::TestWithParam<Capture> {
     return outcome;
   }
 
-  /// With revolution framing a scan's end is known only when the rotor gets there: stamps that contradict
-  /// each other may put points beyond it.
-  void add_points(const Scan& scan, Framing framing, Outcome& outcome) const {
+  void add_points(const Scan& scan, Outcome& outcome) const {
     std::size_t next = 0;
     for (const ScanSegment& segment : scan.segments) {
       EXPECT_EQ(segment.first, next);
       for (const std::size_t end = next + segment.count; next < end; ++next) {
         const LidarPoint& p = scan.points.at(next);
         const MeasurementTime time = segment.time + Nanoseconds(p.dt_ns);
-        const bool in_time = framing == Framing::revolution || (time >= scan.begin && time < scan.end);
+        const bool in_time = time >= scan.begin && time < scan.end;
         // A hair for the square root's rounding; NaN does not pass.
         const bool near = std::hypot(double{p.x}, double{p.y}, double{p.z}) <= range_ * (1.0 + 1e-12);
         if (!near || !in_time) ++outcome.misplaced;
