@@ -15,9 +15,6 @@ constexpr std::uint64_t kStampMask = (std::uint64_t{1} << 62) - 1;
 /// Tag, bits 0-1: doubt for the point's place.
 constexpr std::uint8_t kPlaceMask = 3;
 constexpr std::uint8_t kHighConfidenceOfNoise = 1;
-/// The format holds points thousands of kilometres away. From beyond so many times the range that the maker
-/// states (for 80 % of reflectivity) no mirror returns anything: those bytes were damaged on the way.
-constexpr double kFarthest = 2.0;
 
 std::uint64_t read_le64(Bytes bytes, std::size_t offset) {
   return read_le32(bytes, offset) | std::uint64_t{read_le32(bytes, offset + 4)} << 32;
@@ -117,12 +114,10 @@ void LivoxDecoder::tell_times(std::span<const std::uint8_t> payload, const Heade
 
 void LivoxDecoder::emit(Echoes& echoes, const Header& header, std::size_t shot, DecodedPacket& out) const {
   const std::size_t count = header.kind->echoes;
-  const double farthest = kFarthest * model_.range;
   std::size_t last = 0;  // the farthest
   for (std::size_t k = 0; k < count; ++k) {
     const bool noise = model_.high_noise_is_noise && (echoes[k].tag & kPlaceMask) == kHighConfidenceOfNoise;
-    const bool damaged = echoes[k].square > farthest * farthest;
-    if (noise || damaged) echoes[k].square = 0.0;
+    if (noise) echoes[k].square = 0.0;
     if (echoes[k].square > echoes[last].square) last = k;
   }
   const auto steps = static_cast<std::int64_t>(header.records - 1);
