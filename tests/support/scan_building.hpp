@@ -19,7 +19,7 @@ inline LidarConfig lidar(const std::string& model = "velodyne_vlp16") {
 }
 
 inline ScanBuilder builder_for(const std::vector<LidarConfig>& lidars, Framing framing = Framing::period,
-                        double rate = 10.0) {
+                               double rate = 10.0) {
   auto built = ScanBuilder::create(lidars, {framing, rate});
   EXPECT_TRUE(built.ok());
   return std::move(built).value();

@@ -1,4 +1,5 @@
-// Which frame is a point in, and when is a frame finished? Against streams whose firings are known one by one.
+// Which frame is a point in, and when is a frame finished? Against streams whose firings are known one by
+// one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
