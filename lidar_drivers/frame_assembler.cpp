@@ -76,21 +76,36 @@ void FrameAssembler::cut(MeasurementTime boundary) {
 }
 
 /// Another LiDAR may have been ahead of the one that tells where a turn ends: what it measured after the end
-/// goes from the current frame to the next one.
+/// goes from the current frame to the next one. That is among the newest datagrams, so the rest stays.
 void FrameAssembler::hand_on() {
   Scan& scan = current_.scan;
   if (!current_.used || scan.last_firing < scan.end) return;
+  current_.used = scan.first_firing < scan.end;
   next_.used = true;
-  next_.scan.first_firing = scan.end;
+  next_.scan.first_firing = std::max(scan.first_firing, scan.end);
   next_.scan.last_firing = std::exchange(scan.last_firing, scan.end - Nanoseconds(1));
-  const std::vector<ScanSegment> segments = std::exchange(scan.segments, {});
-  const std::vector<LidarPoint> points = std::exchange(scan.points, {});
+
+  const auto time_of = [](const ScanSegment& segment, const LidarPoint& point) {
+    return segment.time + Nanoseconds(point.dt_ns);
+  };
+  const auto reaches_beyond = [&](const ScanSegment& segment) {
+    const auto points = std::span(scan.points).subspan(segment.first, segment.count);
+    return std::ranges::any_of(points,
+                               [&](const LidarPoint& point) { return time_of(segment, point) >= scan.end; });
+  };
+  const auto first = std::ranges::find_if(scan.segments, reaches_beyond);
+  if (first == scan.segments.end()) return;
+  const std::uint32_t kept = first->first;
+  const std::vector<ScanSegment> segments(first, scan.segments.end());
+  const std::vector<LidarPoint> points(scan.points.begin() + kept, scan.points.end());
+  scan.segments.erase(first, scan.segments.end());
+  scan.points.resize(kept);
   for (const ScanSegment& segment : segments) {
-    const auto all = std::span(points).subspan(segment.first, segment.count);
+    const auto all = std::span(points).subspan(segment.first - kept, segment.count);
     for (Scan* to : {&current_.scan, &next_.scan}) {
       const auto begin = static_cast<std::uint32_t>(to->points.size());
       std::ranges::copy_if(all, std::back_inserter(to->points), [&](const LidarPoint& point) {
-        return (segment.time + Nanoseconds(point.dt_ns) < scan.end) == (to == &scan);
+        return (time_of(segment, point) < scan.end) == (to == &scan);
       });
       const auto count = static_cast<std::uint32_t>(to->points.size()) - begin;
       if (count > 0) to->segments.push_back(centred(segment, std::span(to->points).subspan(begin), begin));

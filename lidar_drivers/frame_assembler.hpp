@@ -2,9 +2,9 @@
 //
 // Two frames are open at a time, the current one and the one after it, so that LiDARs may run ahead of one
 // another by up to a frame. The current frame is finished when every LiDAR that is sending has delivered
-// beyond its end, or 20 ms later. A point is copied once, into the frame of its own firing time.
-// Bounded: at most kMaxLidarPoints of a LiDAR in a frame and four finished frames in waiting. Owner: one
-// thread.
+// beyond its end, or 20 ms later. A point is copied once, into the frame of its own firing time; with
+// revolution framing a few once more, when the turn's end is told after them. Bounded: at most
+// kMaxLidarPoints of a LiDAR in a frame and four finished frames in waiting. Owner: one thread.
 #pragma once
 
 #include <cstdint>
