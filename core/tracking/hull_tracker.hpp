@@ -27,7 +27,7 @@ namespace hulltrack {
 struct FrameInputs {
   bool hold = false;       // the PLC's command word: no tracking wanted
   bool reacquire = false;  // rising edge since the previous frame
-  Faults standing = 0;     // plc_stale, plc_value, lidar_silent, clock as they stood at the scan
+  Faults standing = 0;     // plc_stale, plc_value, lidar_silent, clock: what stands against the inputs
 };
 
 /// What one frame came to, healthy or not.

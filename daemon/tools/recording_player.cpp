@@ -54,7 +54,7 @@ RecordingPlayer::RecordingPlayer(const std::filesystem::path& folder, const Conf
     : pcap_name_((folder / "lidar.pcap").string()),
       plc_name_((folder / "plc.csv").string()),
       lidars_(config.lidars),
-      silent_frames_(config.lidars.size()),
+      trouble_(config.lidars.size()),
       plc_(config.plc),
       source_(std::move(source)),
       router_(std::move(router)),
@@ -76,7 +76,7 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
   inputs_.reacquire = latch_.take_reacquire();
   inputs_.standing = value_fault_;
   inputs_.standing |= frozen ? fault::plc_stale : Faults{0};
-  inputs_.standing |= look_for_silence(scan.end) ? fault::lidar_silent : Faults{0};
+  inputs_.standing |= look_at_lidars(scan.end);
   return true;
 }
 
@@ -118,27 +118,35 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
 }
 
 /// As the service's watch of a LiDAR does it, once a frame.
-bool RecordingPlayer::look_for_silence(MeasurementTime now) {
-  bool any = false;
+Faults RecordingPlayer::look_at_lidars(MeasurementTime now) {
+  Faults standing = 0;
   for (std::size_t i = 0; i < lidars_.size(); ++i) {
     const LidarStatus status = builder_.status(i);
-    const bool silent =
-        now - (status.packets > 0 ? status.last_received : first_datagram_) > lidars_[i].timeout;
-    silent_frames_[i] += silent ? 1 : 0;
-    any = any || silent;
+    const MeasurementTime heard = status.packets > 0 ? status.last_received : first_datagram_;
+    const bool silent = now - heard > lidars_[i].timeout;
+    trouble_[i].silent += silent ? 1 : 0;
+    trouble_[i].clock += status.clock_fault ? 1 : 0;
+    if (status.clock_fault) trouble_[i].last_clock = status.clock;
+    standing |= silent ? fault::lidar_silent : Faults{0};
+    standing |= status.clock_fault ? fault::clock : Faults{0};
   }
-  return any;
+  return standing;
 }
 
-std::string RecordingPlayer::explain_silence() const {
+std::string RecordingPlayer::explain_lidars() const {
   std::string text;
   for (std::size_t i = 0; i < lidars_.size(); ++i) {
-    if (silent_frames_[i] == 0) {
-      continue;
+    const Trouble& trouble = trouble_[i];
+    const char* name = lidars_[i].name.c_str();
+    if (trouble.silent > 0) {
+      text += format_text("silent      LiDAR %s for longer than %lld ms in %s\n", name,
+                          static_cast<long long>(lidars_[i].timeout / std::chrono::milliseconds(1)),
+                          counted(trouble.silent, "frame").c_str());
     }
-    text += format_text("silent      LiDAR %s for longer than %lld ms in %s\n", lidars_[i].name.c_str(),
-                        static_cast<long long>(lidars_[i].timeout / std::chrono::milliseconds(1)),
-                        counted(silent_frames_[i], "frame").c_str());
+    if (trouble.clock > 0) {
+      text += format_text("clock       of LiDAR %s not used in %s: %s\n", name,
+                          counted(trouble.clock, "frame").c_str(), clock_words(trouble.last_clock).c_str());
+    }
   }
   return text;
 }

@@ -39,8 +39,9 @@ class RecordingPlayer {
   [[nodiscard]] const JointHistory& joints() const { return joints_; }
   [[nodiscard]] const FrameInputs& inputs() const { return inputs_; }
 
-  /// Which LiDARs fell silent in the frames so far, a line each for the terminal; empty if none did.
-  [[nodiscard]] std::string explain_silence() const;
+  /// Which LiDARs fell silent or had a clock that was not believed in the frames so far, a line each for the
+  /// terminal; empty if none did.
+  [[nodiscard]] std::string explain_lidars() const;
 
   /// How much of the recording's time has been played, 0..1.
   [[nodiscard]] double share() const;
@@ -49,7 +50,15 @@ class RecordingPlayer {
   RecordingPlayer(const std::filesystem::path& folder, const Config& config, PcapSource&& source,
                   DatagramRouter&& router, ScanBuilder&& builder, std::vector<PlcCsvRow>&& rows);
   [[nodiscard]] Result<bool> read_until_frame(Scan& scan);
-  bool look_for_silence(MeasurementTime now);
+  /// In how many frames a LiDAR had it.
+  struct Trouble {
+    std::uint64_t silent = 0;
+    std::uint64_t clock = 0;
+    ClockReading last_clock{};  // the newest that was not believed
+  };
+
+  /// lidar_silent, clock.
+  Faults look_at_lidars(MeasurementTime now);
   [[nodiscard]] std::string explain_no_frame() const;
   [[nodiscard]] std::string explain_no_joints() const;
   /// When the joints of `row` were measured.
@@ -59,7 +68,7 @@ class RecordingPlayer {
 
   std::string pcap_name_, plc_name_;
   std::vector<LidarConfig> lidars_;
-  std::vector<std::uint64_t> silent_frames_;  // one a LiDAR
+  std::vector<Trouble> trouble_;  // one a LiDAR
   PlcConfig plc_;
   PcapSource source_;
   DatagramRouter router_;

@@ -148,7 +148,7 @@ void replay(const ReplayOptions& options) {
     must(csv->close());
   }
   if (!options.quiet && !summary.empty()) {
-    std::fputs((summary.text(!options.no_timing) + player->explain_silence()).c_str(), stderr);
+    std::fputs((summary.text(!options.no_timing) + player->explain_lidars()).c_str(), stderr);
   }
   if (!broken_off.empty()) {
     throw ToolError(broken_off);
