@@ -109,12 +109,16 @@ Result<void> run_live(const SimulatedBerth& berth, const LiveOptions& options, c
     std::this_thread::sleep_until(start + time);
     return true;
   };
+  bool wanted = true;
   for (auto packet = packets.take(); packet; packet = packets.take()) {
     const Nanoseconds due = packet->departure.time;
-    if (!keep_going_until(due)) break;
+    wanted = keep_going_until(due);
+    if (!wanted) break;
     latest = std::max(latest, now() - start - due);
     if (auto sent = lidars[packet->departure.lidar].send(packet->bytes); !sent) return sent;
   }
+  // What is unplugged until the end sends nothing, but the berth is still there.
+  if (wanted) keep_going_until(berth.frames() * SimulatedBerth::kFramePeriod - std::chrono::milliseconds(1));
   const Nanoseconds end = now() - start;
   if (plc)
     for (const std::string& line : plc->summary(end)) hooks.show(line);

@@ -104,14 +104,14 @@ void record(const SimulatedBerth& berth, const SimulateOptions& options) {
                options.out.c_str(), berth.frames(), options.out.c_str(), options.out.c_str());
 }
 
-/// "HOST:PORT".
-void parse_lidar_target(const std::string& text, LiveOptions& live) {
+/// "HOST:PORT", the first of as many ports as there are LiDARs.
+void parse_lidar_target(const std::string& text, std::size_t lidars, LiveOptions& live) {
   const auto colon = text.rfind(':');
   unsigned port = 0;
   const char* end = text.data() + text.size();
   const auto parsed = colon == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
                                                  : std::from_chars(text.data() + colon + 1, end, port);
-  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port > 65535)
+  if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port + lidars - 1 > 65535)
     throw ToolError(kExitUsage, "--lidar-to " + text + ": give ADDRESS:PORT, 127.0.0.1:2368 for example");
   live.lidar_host = text.substr(0, colon);
   live.lidar_port = static_cast<std::uint16_t>(port);
@@ -191,7 +191,7 @@ void run(SimulateOptions options) {
     options.simulation.frames = static_cast<int>(std::lround(options.seconds * kFrameRate));
   if (!options.joints.empty()) options.simulation.parked = parse_joints(options.joints);
   if (!options.unplug.empty()) options.simulation.unplugged = parse_unplugged(options.unplug);
-  parse_lidar_target(options.lidar_to, options.live);
+  parse_lidar_target(options.lidar_to, options.simulation.lidar_models.size(), options.live);
   options.live.with_plc = !options.no_plc;
   const auto berth = SimulatedBerth::create(options.simulation);
   if (!berth) throw ToolError(kExitUsage, berth.error().message);
