@@ -10,7 +10,8 @@ namespace hulltrack {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
-constexpr float kSineOfCell = 0.01745F;  // of SphericalGrid: one degree
+static_assert(SphericalGrid::kColumns == 360 && SphericalGrid::kRows == 180);
+constexpr float kSineOfCell = 0.01745F;  // one degree
 
 /// Squared distance from a surfel to where the nearest ray meets its plane, m^2. Where none does within
 /// kSurfelRadius, as far as it is known to be flat, or in the cells around, this is how far off they are at

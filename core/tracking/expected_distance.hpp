@@ -31,8 +31,9 @@ class ExpectedDistance {
   static constexpr double kRangeNoise = 0.03;  // m
 
   /// 25th percentile, m; nothing if too few surfels are visible. At most 0.3 m, as far as a surfel is known
-  /// to be flat: where three quarters of them have no ray that near, it is a lower bound. The ratio of Q1 to
-  /// it is then too large rather than too small. `visible`: of map.probes_H(), at the pose T_W_H.
+  /// to be flat: where three quarters of them have no ray that near in the cells around, it is a lower bound.
+  /// The ratio of Q1 to it is then too large rather than too small. `visible`: of map.probes_H(), at the pose
+  /// T_W_H.
   [[nodiscard]] std::optional<double> q1(const HullMap& map, std::span<const VisiblePoint> visible,
                                          const Pose& T_W_H, std::span<const ScanView> views);
 

@@ -8,9 +8,9 @@
 // place: 1 high, 2 moderate, 3 low confidence level of noise (HAP user manual, "Point Cloud Data"; Avia by
 // the manuals of its generation). HAP and Avia: 1 is dropped. Weaker doubt, and the doubt for a weak return
 // (bits 2-3), which wet or dark steel has too, is not acted on: kept. The Mid-360's manual grades how far a
-// point is to be trusted and calls none noise for sure: all are kept. Of several echoes the farthest is the
-// last one, echo 0. Single return may be set to the strongest or the first, which the datagram does not tell:
-// ReturnMode::unknown. Cost: some microseconds a datagram of 96 points.
+// point is to be trusted and calls none noise for sure: all are kept. Of several echoes the farthest, be it
+// beyond the sensor's range, is the last one, echo 0. Single return may be set to the strongest or the first,
+// which the datagram does not tell: ReturnMode::unknown. Cost: some microseconds a datagram of 96 points.
 #pragma once
 
 #include "lidar_drivers/decoder.hpp"
