@@ -74,8 +74,11 @@ enum class DecodeStatus : std::uint8_t {
   wrong_return_mode,  // seen: return mode code that this model does not have
   bad_azimuth,        // seen: an angle (or step) that a rotating sensor cannot report, in sensor units
   wrong_layout,       // expected, seen: a count, length or version in the datagram that this model has not
-  awaiting_angles,    // held back: the sensor has not told its lasers' angles yet
+  awaiting_angles,  // held back: the sensor has not told its lasers' angles yet, or what it told contradicts
+                    // itself (seen = kContradicted)
 };
+
+inline constexpr std::uint32_t kContradicted = 1;
 
 struct DecodeOutcome {
   DecodeStatus status = DecodeStatus::ok;

@@ -58,6 +58,7 @@ DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
   const DecodeOutcome outcome = lidar.decoder->decode(datagram.bytes, packet_);
   if (outcome.status == DecodeStatus::awaiting_angles) {
     ++lidar.status.packets_held_back;
+    lidar.status.angles_contradicted = outcome.seen == kContradicted;
     return outcome;
   }
   if (!outcome.ok()) {

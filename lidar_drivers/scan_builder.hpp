@@ -31,8 +31,9 @@ struct LidarStatus {
   std::uint64_t packets = 0;            // decoded, duplicates included
   std::uint64_t packets_rejected = 0;   // not this model's datagrams; see last_rejection
   std::uint64_t packets_held_back = 0;  // not decodable before the sensor tells its angles
-  std::uint64_t informations = 0;       // datagrams without points: what the sensor tells of itself, its IMU
-  std::uint64_t packets_lost = 0;       // missing between the sensor's time stamps
+  bool angles_contradicted = false;  // of the newest one held back: what the sensor told contradicts itself
+  std::uint64_t informations = 0;    // datagrams without points: what the sensor tells of itself, its IMU
+  std::uint64_t packets_lost = 0;    // missing between the sensor's time stamps
   std::uint64_t packets_duplicate = 0;  // the same bytes again: dropped
   std::uint64_t packets_out_of_order = 0;
   std::uint64_t points_late = 0;          // their frame had been handed out: dropped

@@ -20,10 +20,13 @@ constexpr std::chrono::seconds kLongestUntold{3};
 std::string clock_remedy(const ClockReading& clock, const std::string& name) {
   if (clock.reference != ClockReference::none) return "Check its time synchronisation";
   const LidarModel* model = find_lidar_model(name);
-  const bool in_file = model != nullptr && model->calibration == LidarModel::Calibration::required;
-  return "Set up PTP or GPS on it" +
-         (in_file ? " and fetch its " + std::string(model->calibration_file) + " again, which says so"
-                  : std::string());
+  if (model == nullptr) return "Check its time synchronisation";
+  std::string by(model->clock_by);
+  if (const auto comma = by.find(", "); comma != std::string::npos) by.replace(comma, 2, " or ");
+  std::string remedy = "Set up " + by + " on it";
+  if (model->calibration == LidarModel::Calibration::required)
+    remedy += " and fetch its " + std::string(model->calibration_file) + " again, which says so";
+  return remedy;
 }
 
 }  // namespace
@@ -100,9 +103,15 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
       },
       "no more malformed datagrams");
   const bool held_back = held_back_grows_.update(evidence.status.packets_held_back, now);
+  const bool contradicted = evidence.status.angles_contradicted;
   tell(
-      held_back_log_, held_back && now - start_ > kLongestUntold, now,
+      held_back_log_, held_back && (contradicted || now - start_ > kLongestUntold), now,
       [&] {
+        if (contradicted) {
+          return std::string(
+              "its data are held back, since what it tells of its lasers' angles contradicts itself. If this "
+              "lasts, two sensors send to one port: set `source`; or `calibration` is another sensor's");
+        }
         const std::string port = config_.information_port == 0
                                      ? "`information_port` is 0"
                                      : format_text(

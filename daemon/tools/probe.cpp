@@ -149,8 +149,10 @@ void show_verdict(std::uint32_t sender, const Recognition& recognition) {
   if (best.shape_alone) {
     row("next", "get its " + std::string(best.model->calibration_file) + " and give it as `calibration`");
   } else if (untold) {
-    row("next", format_text("its lasers' angles did not arrive: let UDP port %u through as well",
-                            best.model->information_port));
+    row("next", status.angles_contradicted
+                    ? "what it tells of its lasers' angles contradicts itself: listen longer"
+                    : format_text("its lasers' angles did not arrive: let UDP port %u through as well",
+                                  best.model->information_port));
   } else if (candidates.size() > 1) {
     row("next", "their datagrams are alike: read the type plate, set `model`");
   } else if (status.packets_lost * 50 > status.packets) {

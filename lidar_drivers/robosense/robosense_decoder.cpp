@@ -81,14 +81,12 @@ bool RobosenseDecoder::inform(std::span<const std::uint8_t> payload) {
 }
 
 void RobosenseDecoder::inform(const Difop& unit) {
-  const bool known = unit_ && same_lasers(*unit_, unit);
-  const bool again = told_ && same_lasers(*told_, unit);
+  const bool contradicted = told_ && !same_lasers(*told_, unit);
   told_ = unit;
-  if (unit_ && !known && !again) {
-    if (!confirmed_) unit_.reset();
+  if (contradicted) {
+    unit_.reset();
     return;
   }
-  confirmed_ = known || again;
   unit_ = unit;
   for (std::size_t k = 0; k < model_.lasers; ++k) {
     const double elevation = radians(unit_->angles[k].elevation_deg);
@@ -150,7 +148,7 @@ DecodeOutcome RobosenseDecoder::check(std::span<const std::uint8_t> payload) con
     const std::uint16_t flag = read_be16(payload, kHeaderBytes + block * kBlockBytes);
     if (flag != kBlockFlag) return {DecodeStatus::bad_flag, kBlockFlag, flag};
   }
-  if (!unit_) return {DecodeStatus::awaiting_angles, 0, 0};
+  if (!unit_) return {DecodeStatus::awaiting_angles, 0, told_ ? kContradicted : 0};
   if (!fits(*unit_, model_)) {
     return {DecodeStatus::wrong_product, static_cast<std::uint32_t>(model_.lasers),
             static_cast<std::uint32_t>(unit_->lasers)};
@@ -232,7 +230,9 @@ std::string RobosenseDecoder::explain(const DecodeOutcome& outcome) const {
                     outcome.seen * 0.01);
       return text;
     case DecodeStatus::awaiting_angles:
-      return "expected the unit's DIFOP packet first, saw none yet: its lasers' angles are not known";
+      return outcome.seen == kContradicted
+                 ? "expected two equal DIFOP packets in a row, saw the newest two contradict each other"
+                 : "expected the unit's DIFOP packet first, saw none yet: its lasers' angles are not known";
     case DecodeStatus::wrong_layout:  // other vendors'
       break;
   }

@@ -27,9 +27,9 @@ class RobosenseDecoder final : public Decoder {
   [[nodiscard]] DecodeOutcome decode(std::span<const std::uint8_t> payload,
                                      DecodedPacket& out) const override;
   /// A unit of another model is taken in too, as far as can be told: its data are refused from then on.
-  /// A unit's angles never change and its packet has no checksum: where two packets differ, one was damaged
-  /// on its way or the unit was exchanged. Angles that two packets agreed on stay until two others agree;
-  /// those of a single packet are given up, and data are held back until the next one.
+  /// A unit's angles never change and its packet has no checksum: where two in a row differ, one was damaged
+  /// on its way, the unit was exchanged, or two units send to one port. Data are held back then until two in
+  /// a row agree.
   bool inform(std::span<const std::uint8_t> payload) override;
   /// The same of a DIFOP packet that was read already.
   void inform(const Difop& unit);
@@ -51,10 +51,9 @@ class RobosenseDecoder final : public Decoder {
 
   const ModelTable& model_;
   DecoderOptions options_;
-  Nanoseconds last_pulse_{};  // of a firing, after its first
-  std::optional<Difop> unit_;
+  Nanoseconds last_pulse_{};   // of a firing, after its first
   std::optional<Difop> told_;  // by the newest packet
-  bool confirmed_ = false;     // unit_'s angles stood in two packets
+  std::optional<Difop> unit_;  // the same, unless the packet before contradicts it
   std::array<Beam, kSlots> beams_{};
 };
 

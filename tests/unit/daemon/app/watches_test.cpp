@@ -82,6 +82,14 @@ TEST_F(LidarWatchTest, TellsThatDataAreHeldBackOnceTheSensorShouldHaveToldItsAng
   EXPECT_THAT(log.last(), HasSubstr("`information_port`"));
 }
 
+TEST_F(LidarWatchTest, TellsAtOnceThatWhatTheSensorToldOfItsAnglesContradictsItself) {
+  evidence.status.packets_held_back = 10;
+  evidence.status.angles_contradicted = true;
+  (void)look(milliseconds(100));
+  EXPECT_THAT(log.last(), HasSubstr("contradicts itself"));
+  EXPECT_THAT(log.last(), HasSubstr("set `source`"));
+}
+
 TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
   packet(seconds(1));
   evidence.status.loss = 0.07;
@@ -105,7 +113,7 @@ TEST_F(LidarWatchTest, TellsHowAClockThatFollowsNothingIsHelped) {
   EXPECT_EQ(look(seconds(1)), fault::clock);
   EXPECT_THAT(log.last(),
               HasSubstr("its clock is 3.0 ms behind this computer's; the sensor says that it is not "
-                        "synchronised; the time of reception is used instead. Set up PTP or GPS on it"));
+                        "synchronised; the time of reception is used instead. Set up GPS on it"));
   EXPECT_THAT(log.last(), Not(HasSubstr("fetch")));
 
   LidarConfig config = boom();
