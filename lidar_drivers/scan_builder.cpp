@@ -139,7 +139,10 @@ MeasurementTime ScanBuilder::host_or_sensor_time(Lidar& lidar, const DecodedPack
       lidar.clock.note(packet.sensor_time, datagram.received_utc, packet.clock_reference);
   if (lidar.config.time_source == TimeSource::receive) return datagram.received;
   lidar.status.clock_fault = !lidar.clock.believed();
-  return lidar.status.clock_fault ? datagram.received : datagram.received + offset;
+  // The clock is judged once a second; set by some milliseconds in between, it must not carry a point
+  // farther.
+  const bool is_near = std::chrono::abs(offset) <= SensorClock::kTolerance;
+  return lidar.status.clock_fault || !is_near ? datagram.received : datagram.received + offset;
 }
 
 std::optional<MeasurementTime> ScanBuilder::zero_crossing(const Lidar& lidar, MeasurementTime last) const {

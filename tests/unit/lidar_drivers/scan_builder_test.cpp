@@ -181,6 +181,32 @@ TEST(ScanBuilder, SensorTimeIsUsedWhileItAgreesWithTheHost) {
   }
 }
 
+TEST(ScanBuilder, AClockThatIsSetByMillisecondsCarriesNoPointBeyondTheTolerance) {
+  auto config = lidar();
+  config.time_source = TimeSource::sensor;
+  const auto stream_at = [](Nanoseconds since_start, Nanoseconds ahead) {
+    test::StreamOptions options{.packets = 30};
+    options.start += since_start;
+    options.encoder.utc = options.start.time_since_epoch() % seconds(3600) + ahead;
+    return test::make_stream(options);
+  };
+  for (const int sign : {1, -1}) {
+    auto builder = builder_for({config});
+    std::vector<Scan> scans;
+    MeasurementTime last{};
+    for (const auto& [since, ahead] : {std::pair(milliseconds(0), 19), {milliseconds(50), 41}}) {
+      for (const auto& packet : stream_at(since, sign * milliseconds(ahead)).packets) {
+        ASSERT_TRUE(builder.add(0, packet.datagram()).ok());
+        last = packet.last_firing;
+      }
+    }
+    builder.finish();
+    take_all(builder, scans);
+    ASSERT_FALSE(builder.status(0).clock_fault) << "within the second nobody has noticed";
+    EXPECT_NEAR(to_milliseconds(scans.back().last_firing - last), 0.0, 0.1);
+  }
+}
+
 TEST(ScanBuilder, AClockThatSaysItFollowsNothingIsNotUsedHoweverNearItIs) {
   test::StreamOptions options{.model = "livox_mid360", .slots = 96, .packets = 100};
   options.encoder.utc = options.start.time_since_epoch() + milliseconds(5);
