@@ -112,7 +112,10 @@ void parse_lidar_target(const std::string& text, std::size_t lidars, LiveOptions
   const auto parsed = colon == std::string::npos ? std::from_chars_result{end, std::errc::invalid_argument}
                                                  : std::from_chars(text.data() + colon + 1, end, port);
   if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0 || port + lidars - 1 > 65535)
-    throw ToolError(kExitUsage, "--lidar-to " + text + ": give ADDRESS:PORT, 127.0.0.1:2368 for example");
+    throw ToolError(kExitUsage,
+                    "--lidar-to " + text +
+                        ": give ADDRESS:PORT, 127.0.0.1:2368 for example; a second LiDAR's port follows, "
+                        "65535 is the last one");
   live.lidar_host = text.substr(0, colon);
   live.lidar_port = static_cast<std::uint16_t>(port);
 }

@@ -165,6 +165,11 @@ def check_command_lines(tool, recording):
     """Exit 2 for a wrong command line, 1 for a folder or disk that does not take the result; one plain line."""
     cases = [(2, ["simulat"], ["no subcommand \"simulat\"", "simulate"]),
              (2, ["replay", recording, "--metrics", "fll"], ["--metrics fll", "visible, full or paper"]),
+             *((2, ["simulate", "--unplug", wrong], [f"--unplug {wrong}", "2@10-15"])
+               for wrong in ("1@5-4", "0@5", "1@5-", "1@-5", "1", "1@x")),
+             (2, ["simulate", "--unplug", "2@10"], ["no LiDAR 2"]),
+             (2, ["simulate", *2 * ["--lidar", "velodyne_vlp16"], "--lidar-to", "127.0.0.1:65535"], ["65535"]),
+             (2, ["simulate", *3 * ["--lidar", "velodyne_vlp16"]], ["brackets for 1 to 2 LiDARs"]),
              (1, ["simulate", "--frames", "1", "--out", recording], ["is not empty", "--force"]),
              (1, ["simulate", "--frames", "1", "--plc-bind", "192.0.2.1"], ["192.0.2.1", "an address of this host"]),
              (1, ["replay", recording, "--quiet", "--csv", "/dev/full"], ["/dev/full: ", "No space left"]),
