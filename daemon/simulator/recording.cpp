@@ -126,8 +126,7 @@ Result<void> write_capture(const fs::path& file, const SimulatedBerth& berth,
   auto writer = PcapWriter::create(file);
   if (!writer) return writer.error();
   returns_a_frame.assign(static_cast<std::size_t>(berth.frames()), 0);
-  std::vector<LidarConfig> lidars;
-  for (std::size_t i = 0; i < berth.lidars().size(); ++i) lidars.push_back(berth.lidar_config(i));
+  const std::vector<LidarConfig> lidars = berth.lidar_configs();
   constexpr std::size_t kBatch = 1024;
   std::vector<Cast> batch;
   Departures departures(berth);

@@ -188,6 +188,12 @@ LidarConfig SimulatedBerth::lidar_config(std::size_t lidar) const {
   return config;
 }
 
+std::vector<LidarConfig> SimulatedBerth::lidar_configs() const {
+  std::vector<LidarConfig> configs;
+  for (std::size_t i = 0; i < lidars_.size(); ++i) configs.push_back(lidar_config(i));
+  return configs;
+}
+
 HullConfig SimulatedBerth::hull_config() const {
   HullConfig config;
   config.reference_point = reference_point_H();

@@ -84,6 +84,7 @@ class SimulatedBerth {
 
   /// What a commissioning engineer would have put into the configuration: names and files that differ.
   [[nodiscard]] LidarConfig lidar_config(std::size_t lidar) const;
+  [[nodiscard]] std::vector<LidarConfig> lidar_configs() const;
   [[nodiscard]] HullConfig hull_config() const;
 
  private:

@@ -11,9 +11,8 @@
 namespace hulltrack {
 
 Result<std::vector<Scan>> simulated_scans(const SimulatedBerth& berth, int first, int count) {
-  std::vector<LidarConfig> lidars;
-  for (std::size_t i = 0; i < berth.lidars().size(); ++i) lidars.push_back(berth.lidar_config(i));
-  auto builder = ScanBuilder::create(lidars, {.framing = Framing::period, .frame_rate_hz = 10.0});
+  auto builder =
+      ScanBuilder::create(berth.lidar_configs(), {.framing = Framing::period, .frame_rate_hz = 10.0});
   if (!builder) return builder.error();
   // The first datagram's first firing opens the grid of frames, so it must not be before the first frame.
   Departures departures(berth, first * SimulatedBerth::kFramePeriod);
