@@ -18,9 +18,8 @@ constexpr double kRateTolerance = 0.05;
 constexpr std::chrono::seconds kLongestUntold{3};
 
 std::string clock_remedy(const ClockReading& clock, const std::string& name) {
-  if (clock.reference != ClockReference::none) return "Check its time synchronisation";
   const LidarModel* model = find_lidar_model(name);
-  if (model == nullptr) return "Check its time synchronisation";
+  if (clock.reference != ClockReference::none || model == nullptr) return "Check its time synchronisation";
   std::string by(model->clock_by);
   if (const auto comma = by.find(", "); comma != std::string::npos) by.replace(comma, 2, " or ");
   std::string remedy = "Set up " + by + " on it";

@@ -31,8 +31,8 @@ bool looks_like(std::span<const std::uint8_t> payload) {
 
 /// One row: which of the family it is, the metadata says. Range: the OS-2's, the longest, at 80 % of
 /// reflectivity; of OS-1 120 m (data sheet), of OS-0 50 m. Those of OS-0 and OS-2 are from users' tables, the
-/// maker's sheets of them were not to be had; later revisions may reach farther. From
-/// beyond it the scan builder takes no point.
+/// maker's sheets of them were not to be had; later revisions may reach farther. From beyond
+/// it the scan builder takes no point.
 std::vector<LidarModel> lidar_models() {
   return {{.name = "ouster_os",
            .vendor = "Ouster",
