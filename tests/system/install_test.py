@@ -9,7 +9,7 @@ import tempfile
 SAMPLE = "etc/hulltrackd/hulltrackd.toml.sample"
 BELOW_PREFIX = ["bin/hulltrackd", "bin/hulltrack", "lib/systemd/system/hulltrackd.service",
                 "lib/sysusers.d/hulltrackd.conf", "lib/sysctl.d/60-hulltrackd.conf", "share/man/man1/hulltrack.1",
-                "share/man/man5/hulltrackd.toml.5", "share/man/man8/hulltrackd.8"]
+                "share/man/man5/hulltrackd.toml.5", "share/man/man8/hulltrackd.8", "share/doc/hulltrackd/icd.md"]
 
 
 def install(cmake, build, prefix, destdir=None):
