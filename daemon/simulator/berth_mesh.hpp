@@ -1,5 +1,5 @@
-// The berth around the ship, in W: quay with fenders and bollards, rails, a conveyor gallery, a stockpile,
-// a shed; the water; a crane. Everything here is clutter to the tracker.
+// The berth around the ship, in W: quay with rails, bollards and fenders; conveyor gallery, towers, sheds,
+// masts behind it; the water; a crane. Of these the quay and what is built on it stand still for ever.
 //
 // Quay edge y = 0 with the ship on its +y side, rail level z = 0, river level kWaterLevel at time 0. Metres.
 // Pure.
@@ -11,6 +11,7 @@ namespace hulltrack {
 
 inline constexpr float kWaterLevel = -5.0F;  // z in W
 
+/// Everything that is built: what a map of the quay shows.
 [[nodiscard]] TriangleMesh berth_mesh();
 [[nodiscard]] TriangleMesh water_mesh();
 

@@ -75,9 +75,9 @@ std::optional<RayHit> RayScene::cast(const Point& origin, const Point& direction
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(impl_->scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  const Point normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-  const float cosine = std::abs(normal.dot(direction)) / (normal.norm() * direction.norm());
-  return RayHit{query.ray.tfar, cosine, impl_->mesh.materials[query.hit.primID]};
+  const Point normal = Point(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
+  const float cosine = std::abs(normal.dot(direction)) / direction.norm();
+  return RayHit{query.ray.tfar, cosine, impl_->mesh.materials[query.hit.primID], normal};
 }
 
 bool RayScene::blocked(const Point& origin, const Point& direction, float max_distance) const {

@@ -16,6 +16,7 @@ struct RayHit {
   float distance;       // along the ray, in lengths of its direction
   float cos_incidence;  // |cos| of the angle between ray and surface normal: 1 = head on
   Material material;
+  Point normal;  // of the surface, length 1, on either side
 };
 
 class RayScene {

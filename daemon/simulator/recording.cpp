@@ -166,6 +166,11 @@ Result<void> write_calibrations(PendingFiles& files, const SimulatedBerth& berth
   return {};
 }
 
+Result<void> write_maps(PendingFiles& files, const SimulatedBerth& berth) {
+  if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
+  return write_pcd(files.add("quay.pcd"), berth.quay_map());
+}
+
 }  // namespace
 
 std::vector<PlcCsvRow> recorded_plc(const SimulatedBerth& berth) {
@@ -204,7 +209,7 @@ Result<void> write_recording(const SimulatedBerth& berth, const fs::path& folder
   if (auto done = write_calibrations(files, berth); !done) return done;
   if (auto done = write_table(files.add("truth.csv"), recorded_truth(berth)); !done) return done;
   if (auto done = write_table(files.add("plc.csv"), recorded_plc(berth)); !done) return done;
-  if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
+  if (auto done = write_maps(files, berth); !done) return done;
   if (!progress(0.0)) return Error{"interrupted; nothing was left in the folder"};
   std::vector<std::size_t> returns;
   if (auto done = write_capture(files.add("lidar.pcap"), berth, returns, progress); !done) return done;
@@ -218,7 +223,7 @@ Result<void> write_site_files(const SimulatedBerth& berth, const fs::path& folde
   PendingFiles files(folder);
   if (auto done = write_text(files.add("hulltrackd.toml"), config_text); !done) return done;
   if (auto done = write_calibrations(files, berth); !done) return done;
-  if (auto done = write_pcd(files.add("hull.pcd"), berth.map()); !done) return done;
+  if (auto done = write_maps(files, berth); !done) return done;
   return files.commit();
 }
 

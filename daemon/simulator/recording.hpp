@@ -1,5 +1,6 @@
-// A simulation as a recording folder: lidar.pcap, plc.csv, hull.pcd, hulltrackd.toml; of the truth, truth.csv
-// and returns.csv: how many returns from beyond a metre the LiDARs had in each frame, at its middle.
+// A simulation as a recording folder: lidar.pcap, plc.csv, hull.pcd, quay.pcd, hulltrackd.toml; of the truth,
+// truth.csv and returns.csv: how many returns from beyond a metre the LiDARs had in each frame, at its
+// middle.
 //
 // Files are written under temporary names and renamed when all are complete, so that an interrupted run
 // leaves nothing that looks whole. The same simulation gives the same bytes. All cores work.
@@ -23,7 +24,7 @@ using ProgressCallback = std::function<bool(double share)>;
 [[nodiscard]] Result<void> write_recording(const SimulatedBerth& berth, const std::filesystem::path& folder,
                                            bool overwrite, const ProgressCallback& progress);
 
-/// Only hull.pcd and hulltrackd.toml, for a service that listens to a live simulation.
+/// Only hull.pcd, quay.pcd and hulltrackd.toml, for a service that listens to a live simulation.
 [[nodiscard]] Result<void> write_site_files(const SimulatedBerth& berth, const std::filesystem::path& folder,
                                             bool overwrite, const std::string& config_text);
 

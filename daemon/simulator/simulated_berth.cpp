@@ -165,18 +165,32 @@ TriangleMesh SimulatedBerth::hull_mesh_H(Nanoseconds time) const {
   return shaped_mesh_H(scenario_->ship_at_berth, change_.shape(change_.at(to_seconds(time))));
 }
 
-Cloud SimulatedBerth::map() const {
-  // The loader went along the whole ship with the boom to either side, high and low.
-  std::vector<Point> stations_H;
+namespace {
+
+/// The loader went along the whole berth with the boom to either side, high and low. In W.
+std::vector<Point> survey_stations() {
+  std::vector<Point> stations;
   const LoaderLimits limits = loader_limits();
   constexpr double kStationSpacing = 8.0;  // m of travel
   for (double d_x = limits.travel.low - 12.0; d_x <= limits.travel.high + 12.0; d_x += kStationSpacing)
     for (const double slew : {limits.slew.low, limits.slew.high})
       for (const double luff : {limits.luff.low, limits.luff.high}) {
         const Pose T_W_L = lidar_pose(loader_machine(), {d_x, slew, luff}, lidar_brackets().front());
-        stations_H.push_back(T_W_L.translation().cast<float>());
+        stations.push_back(T_W_L.translation().cast<float>());
       }
-  return survey(map_mesh_H(), stations_H, options_.seed);
+  return stations;
+}
+
+}  // namespace
+
+// When the hull was surveyed, H was W.
+Cloud SimulatedBerth::map() const { return survey(map_mesh_H(), survey_stations(), options_.seed); }
+
+Cloud SimulatedBerth::quay_map() const {
+  Cloud map = survey(berth_mesh(), survey_stations(), options_.seed, kQuayVoxel);
+  constexpr float kSplash = 0.3F;  // m: the quay's wall is wet up to here
+  std::erase_if(map, [](const Point& p) { return p.z() < kWaterLevel + kSplash; });
+  return map;
 }
 
 LidarConfig SimulatedBerth::lidar_config(std::size_t lidar) const {

@@ -41,6 +41,7 @@ struct SimulationOptions {
       std::nullopt;  // s: the ship gets under way then, not when the scenario says
   EncoderConfig encoders = {};
   ReturnMode return_mode = ReturnMode::strongest;  // strongest, last or dual
+  bool configure_quay_map = true;                  // the configuration names the map of the quay
 };
 
 class SimulatedBerth {
@@ -81,6 +82,8 @@ class SimulatedBerth {
   [[nodiscard]] TriangleMesh map_mesh_H() const;
   [[nodiscard]] TriangleMesh hull_mesh_H(Nanoseconds time = Nanoseconds{0}) const;
   [[nodiscard]] Cloud map() const;
+  /// What is built at the berth, in W, surveyed while no ship lay there.
+  [[nodiscard]] Cloud quay_map() const;
 
   /// What a commissioning engineer would have put into the configuration: names and files that differ.
   [[nodiscard]] LidarConfig lidar_config(std::size_t lidar) const;

@@ -1,10 +1,12 @@
 #include "daemon/simulator/site_config.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
 #include "daemon/simulator/loader_machine.hpp"
+#include "daemon/simulator/quay_ground.hpp"
 #include "lidar_drivers/datagram_router.hpp"
 
 namespace hulltrack {
@@ -95,6 +97,19 @@ void put_hull(std::string& text, const HullConfig& hull) {
       "fenders\n"
       "# and her lines leave her 2 m; high water lifts her by 3 m, cargo and low water sink her by 9 m.\n";
   put_box(text, "envelope", hull.envelope, "");
+  text += "\n";
+}
+
+/// Section [quay], behind a # on every line as long as the reader does not know it.
+void put_quay(std::string& text, bool with_map) {
+  constexpr const char* kBefore = "# ";
+  const auto slope_deg = [](float slope) { return degrees(std::atan(static_cast<double>(slope))); };
+  put(text, "%s[quay]   # what stands still: z = height + tan(slope[0]) * x + tan(slope[1]) * y is its top\n",
+      kBefore);
+  put(text, "%sheight = %.3f\n", kBefore, static_cast<double>(kQuayHeight));
+  put(text, "%sslope = [%.3f, %.3f]   # deg; falls 1 %% from the edge to the gutter 28 m behind it\n",
+      kBefore, slope_deg(kQuaySlopeX), slope_deg(kQuaySlopeY));
+  if (with_map) put(text, "%smap = \"quay.pcd\"\n", kBefore);
 }
 
 }  // namespace
@@ -114,6 +129,7 @@ std::string site_config(const SimulatedBerth& berth, const SiteAddresses& addres
   for (std::size_t i = 0; i < berth.lidars().size(); ++i)
     put_lidar(text, reachable(berth, i, addresses), kBracketRemarks[i]);
   put_hull(text, berth.hull_config());
+  put_quay(text, berth.options().configure_quay_map);
   return text;
 }
 

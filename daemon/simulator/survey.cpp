@@ -11,18 +11,17 @@
 namespace hulltrack {
 namespace {
 
-constexpr float kSampleSpacing = 0.045F;   // m: 1.2 rays a voxel, so that a survey leaves few voxels empty
-constexpr float kVoxel = 0.05F;            // m
+constexpr float kSampleSpacing = 0.9F;     // voxels: 1.2 rays a voxel, so that a survey leaves few empty
 constexpr float kRangeSigma = 0.005F;      // m, after averaging many frames
 constexpr float kMaxRange = 60.0F;         // m
 constexpr float kMinCosIncidence = 0.12F;  // 83 deg
 constexpr std::size_t kNearestStations = 8;
 
-/// Index of the 5 cm voxel around p: 21 bits an axis reach 52 km.
-std::uint64_t voxel_of(const Point& p) {
-  const auto axis = [](float v) {
+/// Index of the voxel around p: 21 bits an axis reach 52 km at 5 cm.
+std::uint64_t voxel_of(const Point& p, float voxel) {
+  const auto axis = [voxel](float v) {
     constexpr std::int64_t kOffset = 1 << 20;
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / kVoxel)) + kOffset);
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / voxel)) + kOffset);
   };
   return axis(p.x()) | (axis(p.y()) << 21U) | (axis(p.z()) << 42U);
 }
@@ -30,8 +29,8 @@ std::uint64_t voxel_of(const Point& p) {
 /// The survey of one triangle.
 class TriangleSurvey {
  public:
-  TriangleSurvey(const RayScene& scene, const std::vector<Point>& stations)
-      : scene_(scene), stations_(stations) {}
+  TriangleSurvey(const RayScene& scene, const std::vector<Point>& stations, float voxel)
+      : scene_(scene), stations_(stations), spacing_(kSampleSpacing * voxel) {}
 
   void run(std::size_t triangle, std::uint64_t seed, Cloud& out) const {
     const TriangleMesh& mesh = scene_.mesh();
@@ -41,10 +40,13 @@ class TriangleSurvey {
     const Point v = mesh.vertices[corners[2]] - a;
     const Point normal = u.cross(v);
     const float area = 0.5F * normal.norm();
-    const std::vector<Point> stations = nearest_stations(a + (u + v) / 3.0F);
+    const Point centre = a + (u + v) / 3.0F;
+    const std::vector<Point> stations = nearest_stations(centre);
+    const float size = std::max({(a - centre).norm(), (a + u - centre).norm(), (a + v - centre).norm()});
+    if ((stations.front() - centre).norm() > kMaxRange + size) return;
     RandomStream random(seed, 400, triangle);
     const auto samples =
-        static_cast<int>(area / (kSampleSpacing * kSampleSpacing) + static_cast<float>(random.uniform()));
+        static_cast<int>(area / (spacing_ * spacing_) + static_cast<float>(random.uniform()));
     for (int i = 0; i < samples; ++i) {
       auto s = static_cast<float>(random.uniform());
       auto t = static_cast<float>(random.uniform());
@@ -82,21 +84,22 @@ class TriangleSurvey {
 
   const RayScene& scene_;
   const std::vector<Point>& stations_;
+  float spacing_;  // of samples, m
 };
 
 }  // namespace
 
-Cloud survey(const TriangleMesh& hull_mesh_H, const std::vector<Point>& stations_H, std::uint64_t seed) {
-  const RayScene scene(hull_mesh_H);
-  const TriangleSurvey one(scene, stations_H);
-  std::vector<Cloud> of_triangle(hull_mesh_H.triangles.size());
+Cloud survey(const TriangleMesh& mesh, const std::vector<Point>& stations, std::uint64_t seed, float voxel) {
+  const RayScene scene(mesh);
+  const TriangleSurvey one(scene, stations, voxel);
+  std::vector<Cloud> of_triangle(mesh.triangles.size());
   for_each_index(of_triangle.size(), [&](std::size_t i) { one.run(i, seed, of_triangle[i]); });
 
   Cloud map;
   std::unordered_set<std::uint64_t> taken;
   for (const Cloud& cloud : of_triangle)
     for (const Point& p : cloud)
-      if (taken.insert(voxel_of(p)).second) map.push_back(p);
+      if (taken.insert(voxel_of(p, voxel)).second) map.push_back(p);
   return map;
 }
 

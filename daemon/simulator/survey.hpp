@@ -1,9 +1,10 @@
-// The map of the simulated ship: what a survey from the loader would have left after registration, voxel
-// filter and the removal of all that is not hull.
+// A map of what stands at the simulated berth: what a survey from the loader would have left after
+// registration, voxel filter and the removal of all that is something else.
 //
-// Points of the empty ship's surfaces that a LiDAR on the boom saw from one of several stations along the
-// ship (not occluded, within range, not too oblique), with 5 mm noise along the ray, one point a 5 cm voxel.
-// In H, metres. The same seed gives the same points. About 1.5 million points in some seconds on two cores.
+// Points of the surfaces that a LiDAR on the boom saw from one of several stations along the berth (not
+// occluded, within range, not too oblique), with 5 mm noise along the ray, one point a voxel. In the frame of
+// mesh and stations, metres. The same seed gives the same points. A hull: about 1.5 million points in some
+// seconds on two cores.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,12 @@
 
 namespace hulltrack {
 
-/// `stations_H`: where the LiDAR stood, at least one.
-[[nodiscard]] Cloud survey(const TriangleMesh& hull_mesh_H, const std::vector<Point>& stations_H,
-                           std::uint64_t seed);
+/// Edge of a voxel of a hull's map, of a quay's.
+inline constexpr float kHullVoxel = 0.05F;
+inline constexpr float kQuayVoxel = 0.10F;
+
+/// `stations`: where the LiDAR stood, at least one; `voxel`: m.
+[[nodiscard]] Cloud survey(const TriangleMesh& mesh, const std::vector<Point>& stations, std::uint64_t seed,
+                           float voxel = kHullVoxel);
 
 }  // namespace hulltrack

@@ -258,11 +258,13 @@ void add_simulate(CLI::App& app) {
       })
       ->capture_default_str();
   command->add_option("--joints", options->joints, "D_X,SLEW,LUFF in m and deg: the loader is parked there");
+  command->add_flag("!--no-quay-map", simulation.configure_quay_map,
+                    "The configuration does without the map of the quay");
   command->add_flag("--force", options->overwrite, "Replace what is in the folder of --out or --config-out");
 
   auto* out = command->add_option(
       "--out", options->out,
-      "Folder for lidar.pcap, plc.csv, truth.csv, returns.csv, hull.pcd, hulltrackd.toml");
+      "Folder for lidar.pcap, plc.csv, truth.csv, returns.csv, hull.pcd, quay.pcd, hulltrackd.toml");
   command
       ->add_option("--config-out", options->config_out,
                    "Live: folder for the map and a matching hulltrackd.toml")

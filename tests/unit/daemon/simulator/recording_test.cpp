@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* const kFiles[] = {"lidar.pcap", "plc.csv", "truth.csv", "hull.pcd", "hulltrackd.toml"};
+const char* const kFiles[] = {"lidar.pcap", "plc.csv",  "truth.csv",
+                              "hull.pcd",   "quay.pcd", "hulltrackd.toml"};
 
 class Recording : public testing::Test {
  protected:
@@ -90,6 +91,19 @@ TEST_F(Recording, ConfigurationSaysWhatTheSimulationIs) {
     EXPECT_EQ(config.tracker.hull.envelope.max, simulated->hull_config().envelope.max);
     EXPECT_EQ(config.tracker.registration.method, RegistrationConfig{}.method);
   }
+}
+
+TEST_F(Recording, ConfigurationSaysWhatIsKnownOfTheQuay) {
+  const auto text_of = [](bool with_map) {
+    return site_config(
+        *std::move(SimulatedBerth::create({.frames = 1, .configure_quay_map = with_map})).value(), {});
+  };
+  for (const char* line : {"[quay]", "height = -0.150\n", "slope = [0.029, 0.573]"}) {
+    EXPECT_NE(text_of(true).find(line), std::string::npos) << line;
+    EXPECT_NE(text_of(false).find(line), std::string::npos) << line;
+  }
+  EXPECT_NE(text_of(true).find("map = \"quay.pcd\"\n"), std::string::npos);
+  EXPECT_EQ(text_of(false).find("quay.pcd"), std::string::npos);
 }
 
 /// Two sensors as delivered send to the same port; only their addresses tell them apart.
