@@ -1,6 +1,7 @@
 #include "core/tracking/health.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/text.hpp"
@@ -106,6 +107,23 @@ void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& fin
   }
 }
 
+/// No ship lies at a quay heeled, trimmed or turned like this: it is a machine whose slew, luff or mount is
+/// not what the configuration says, or an alignment that went wrong.
+void check_attitude(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+  static constexpr std::array<std::pair<const char*, const char*>, 3> kWords = {
+      {{"heel", "max_heel"}, {"be trimmed", "max_trim"}, {"be turned", "max_yaw"}}};
+  const Eigen::Vector3d rpy = rpy_from_rotation(e.rotation);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(rpy[axis]) <= limits.max_rpy[axis])) {
+      const auto& [seems_to, key] = kWords[static_cast<std::size_t>(axis)];
+      findings.add(State::lost, fault::implausible,
+                   format_text("the hull seems to %s by %.1f deg, hull.%s is %.1f deg: is a sign, scale or "
+                               "bias of slew or luff wrong, or a LiDAR's mount?",
+                               seems_to, degrees(rpy[axis]), key, degrees(limits.max_rpy[axis])));
+    }
+  }
+}
+
 /// Does the pose follow from the one before? Ends `unique` when the hull was out of sight for too long.
 void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
   if (!memory.followed) {
@@ -135,21 +153,51 @@ void check_continuity(HealthMemory& memory, const Evidence& e, Findings& finding
   }
 }
 
-void check_speed(const HealthLimits& limits, const HealthMemory& memory, Findings& findings) {
-  const auto motion = memory.motion.motion();
-  if (!motion) {
-    return;
-  }
-  const double speed = motion->velocity.norm();
+/// Of the fastest part of the hull beyond what noise explains, m/s; with words for it. Nothing while slow.
+struct FastPart {
+  double speed;
+  std::string words;
+};
+std::optional<FastPart> fast_part(const HealthLimits& limits, const MotionRecord::Motion& motion) {
+  const double speed = motion.velocity.norm();
   if (speed > limits.max_speed) {
-    findings.add(State::degraded, fault::implausible,
-                 format_text("the hull moves at %.2f m/s, max_speed is %.2f m/s", speed, limits.max_speed));
+    return FastPart{
+        speed, format_text("the hull moves at %.2f m/s, max_speed is %.2f m/s", speed, limits.max_speed)};
   }
-  const double turning = std::abs(motion->rpy_rate.z());
-  if ((turning - kYawRateNoise) * limits.half_length > limits.max_speed) {
-    findings.add(State::degraded, fault::implausible,
-                 format_text("the hull turns at %.2f deg/s and its ends at %.2f m/s, max_speed is %.2f m/s",
-                             degrees(turning), turning * limits.half_length, limits.max_speed));
+  const double turning = std::abs(motion.rpy_rate.z());
+  const double ends = turning * limits.half_length;
+  if (ends - kYawRateNoise * limits.half_length > limits.max_speed) {
+    return FastPart{ends, format_text("the hull turns at %.2f deg/s and its ends at %.2f m/s, max_speed is "
+                                      "%.2f m/s",
+                                      degrees(turning), ends, limits.max_speed)};
+  }
+  return std::nullopt;
+}
+
+/// The run goes on over a pause as long as the record in which a speed is sought, since noise makes gaps.
+void note_run(HealthMemory& memory, MeasurementTime time, double speed) {
+  if (!memory.run || time - memory.run->last > MotionRecord::kWindow) {
+    memory.run = {0.0, time};
+  }
+  memory.run->length += speed * std::max(0.0, to_seconds(time - memory.run->last));
+  memory.run->last = time;
+  memory.ran_away = memory.ran_away || memory.run->length > kLongestRun;
+}
+
+void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTime time, Findings& findings) {
+  if (const auto motion = memory.motion.motion()) {
+    if (auto fast = fast_part(limits, *motion)) {
+      note_run(memory, time, fast->speed);
+      findings.add(State::degraded, fault::implausible, std::move(fast->words));
+    }
+  }
+  if (memory.ran_away) {
+    findings.add(
+        State::lost, fault::implausible,
+        format_text("the hull seems to have run more than %.0f m faster than max_speed: she is or was "
+                    "under way, or an encoder stands still while the loader moves. When she is moored "
+                    "and travel, slew and luff are right: a re-acquire edge",
+                    kLongestRun));
   }
 }
 
@@ -190,7 +238,8 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
       memory.motion.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
     }
     check_envelope(limits, e, findings);
-    check_speed(limits, memory, findings);
+    check_attitude(limits, e, findings);
+    check_speed(limits, memory, e.time, findings);
   }
 
   const bool a_lidar_is_silent = (e.standing & fault::lidar_silent) != 0;
@@ -219,8 +268,12 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
 }  // namespace
 
 HealthLimits health_limits(const TrackerConfig& config, double half_length) {
-  return {config.health, config.hull.envelope.min.cast<double>(), config.hull.envelope.max.cast<double>(),
-          config.hull.max_speed, half_length};
+  return {config.health,
+          config.hull.envelope.min.cast<double>(),
+          config.hull.envelope.max.cast<double>(),
+          Eigen::Vector3d(config.hull.max_heel, config.hull.max_trim, config.hull.max_yaw),
+          config.hull.max_speed,
+          half_length};
 }
 
 std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, HealthMemory memory,

@@ -12,7 +12,8 @@
 //   acquiring  instead of degraded and lost while the hull has to be searched for
 // A scan may look the same one hatch farther along the quay, so a pose is believed only if it follows from an
 // earlier one without a gap in which the hull could have moved by kUnseen, or if the whole berth was searched
-// since and no other place explains the scan as well. Metres, radians. The pose's age is the publisher's
+// since and no other place explains the scan as well. A hull that ran away (kLongestRun) is not believed
+// again before a person has looked: a re-acquire edge. Metres, radians. The pose's age is the publisher's
 // business.
 #pragma once
 
@@ -60,17 +61,29 @@ inline constexpr double kUnseen = 1.0;  // m
 /// Nothing moves a moored hull faster: twice the fastest jerk of a passing ship, a metre within some seconds.
 inline constexpr double kFastestHull = 0.6;  // m/s
 
+/// The longest way on which a moored hull is faster than hull.max_speed: all of the fastest jerk that a
+/// passing ship gives her. One that runs farther is under way, or an encoder stands still while the loader
+/// moves, and nobody can tell which.
+inline constexpr double kLongestRun = 1.0;  // m
+
 struct HealthMemory {
   struct FollowedPose {
     MeasurementTime time;
     Eigen::Vector3d displacement;
     Eigen::Matrix3d rotation;
   };
+  /// How far some part of the hull has run faster than max_speed, without a pause.
+  struct FastRun {
+    double length;  // m
+    MeasurementTime last;
+  };
   State state = State::starting;
   bool unique = false;                   // the pose follows from one that no other place rivalled
   int good_frames = 0;                   // in a row
   std::optional<FollowedPose> followed;  // the last pose that the scan did not contradict
   MotionRecord motion;                   // of the followed poses
+  std::optional<FastRun> run;
+  bool ran_away = false;  // farther than kLongestRun, until a re-acquire edge
 };
 
 struct HealthVerdict {
@@ -82,6 +95,7 @@ struct HealthVerdict {
 struct HealthLimits {
   HealthConfig health;
   Eigen::Vector3d envelope_min, envelope_max;  // displacement, m
+  Eigen::Vector3d max_rpy;                     // heel, trim and yaw about the map's attitude, rad
   double max_speed = 0.3;                      // m/s, of any part of the hull
   double half_length = 0.0;                    // of the hull as far as it is mapped, level, m
 };

@@ -109,7 +109,8 @@ Section hull_section(Config& config) {
            "reference_point", 10'000.0, "m", [&hull] { return hull.reference_point; },
            [&hull](const Eigen::Vector3d& p) { hull.reference_point = p; }),
        optional_box("region", hull.region), box("envelope", hull.envelope),
-       number("max_speed", hull.max_speed, 0.001, 10.0, "m/s")}};
+       number("max_speed", hull.max_speed, 0.001, 10.0, "m/s"), angle("max_heel", hull.max_heel, 0.1, 45.0),
+       angle("max_trim", hull.max_trim, 0.1, 45.0), angle("max_yaw", hull.max_yaw, 0.1, 45.0)}};
 }
 
 Section tracking_section(Config& config) {

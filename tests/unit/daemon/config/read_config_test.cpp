@@ -95,6 +95,9 @@ reference_point = [10, 20, 30]
 region = [-1, -2, -3, 1, 2, 3]
 envelope = [-1, -1, -1, 1, 1, 1]
 max_speed = 0.1
+max_heel = 5
+max_trim = 2.5
+max_yaw = 1
 [tracking]
 framing = "revolution"
 frame_rate_hz = 20
@@ -170,6 +173,9 @@ level = "debug"
   EXPECT_EQ(c.tracker.hull.region->max, Point(1, 2, 3));
   EXPECT_EQ(c.tracker.hull.envelope.max, Point(1, 1, 1));
   EXPECT_EQ(c.tracker.hull.max_speed, 0.1);
+  EXPECT_DOUBLE_EQ(c.tracker.hull.max_heel, radians(5.0));
+  EXPECT_DOUBLE_EQ(c.tracker.hull.max_trim, radians(2.5));
+  EXPECT_DOUBLE_EQ(c.tracker.hull.max_yaw, radians(1.0));
   EXPECT_EQ(c.framing.framing, Framing::revolution);
   EXPECT_EQ(c.framing.frame_rate_hz, 20.0);
   EXPECT_EQ(c.tracker.registration.voxel_size, 0.4);
