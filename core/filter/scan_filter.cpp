@@ -24,10 +24,10 @@ ScanFilter::ScanFilter(const MachineConfig& machine, std::vector<SensorConfig> s
 void ScanFilter::run(const Scan& scan, const JointHistory& joints, const HullDrift& drift,
                      FilteredScan& out) const {
   out.returns_W.resize(sensors_.size());
-  out.of_hull.resize(sensors_.size());
+  out.of.resize(sensors_.size());
   for (std::size_t lidar = 0; lidar < sensors_.size(); ++lidar) {
     out.returns_W[lidar].clear();
-    out.of_hull[lidar].clear();
+    out.of[lidar].clear();
   }
   out.hull_W.clear();
   out.segments_left_out = 0;
@@ -55,7 +55,7 @@ void ScanFilter::run_segment(std::span<const LidarPoint> points, std::uint16_t l
   const Eigen::Matrix3f R = T_W_L.linear().cast<float>();
   const Point t = T_W_L.translation().cast<float>();
   Cloud& returns_W = out.returns_W[lidar];
-  std::vector<std::uint8_t>& of_hull = out.of_hull[lidar];
+  std::vector<ReturnOf>& of = out.of[lidar];
   for (const LidarPoint& point : points) {
     const Point p_L(point.x, point.y, point.z);
     const float range2 = p_L.squaredNorm();
@@ -64,9 +64,12 @@ void ScanFilter::run_segment(std::span<const LidarPoint> points, std::uint16_t l
     }
     const Point p_W = R * p_L + t;
     returns_W.push_back(p_W);
-    const bool hull = !inside_any(sensor.exclude, p_L) && (!region_W_ || region_W_->contains(p_W));
-    of_hull.push_back(hull ? 1 : 0);
-    if (hull) {
+    if (inside_any(sensor.exclude, p_L)) {
+      of.push_back(ReturnOf::machine);
+    } else if (region_W_ && !region_W_->contains(p_W)) {
+      of.push_back(ReturnOf::surroundings);
+    } else {
+      of.push_back(ReturnOf::hull);
       out.hull_W.push_back(p_W);
     }
   }

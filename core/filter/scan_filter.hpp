@@ -30,10 +30,17 @@ struct SensorConfig {
   std::vector<Box> exclude;       // in L: the machine's own chute and boom
 };
 
+/// What a return may be of.
+enum class ReturnOf : std::uint8_t {
+  surroundings,  // outside of the region
+  hull,          // it is in FilteredScan::hull_W
+  machine,       // in an exclude box
+};
+
 struct FilteredScan {
-  std::vector<Cloud> returns_W;  // per LiDAR all of valid range, hull or not: what it really saw
-  std::vector<std::vector<std::uint8_t>> of_hull;  // for each of these: 1 if it is in hull_W
-  Cloud hull_W;                                    // the candidates for hull, full resolution
+  std::vector<Cloud> returns_W;           // per LiDAR all of valid range, hull or not: what it really saw
+  std::vector<std::vector<ReturnOf>> of;  // for each of these
+  Cloud hull_W;                           // the candidates for hull, full resolution
   std::uint32_t segments_left_out = 0;
 };
 

@@ -6,62 +6,27 @@
 
 #include "core/map/surfels.hpp"
 #include "core/tracking/health.hpp"
+#include "core/tracking/surface_rays.hpp"
 
 namespace hulltrack {
+
 namespace {
 
-constexpr float kAround = 0.2F;  // m in the plane: half a subset voxel; returns in it are the surfel's own
-constexpr float kSameSurface = 0.06F;  // m: three sigma of a return beside the nearest one
-constexpr float kHidden = 0.1F;        // m before a surfel: from there on something else was seen
-constexpr float kGrazing = 0.1F;       // sine of 6 deg: below it a range says little about the plane
-constexpr float kStepGate = 0.5F;      // m: observations farther off the plane belong to something else
-constexpr float kOnRim = 0.1F;         // m across: what is surely coaming around a rim point
-constexpr float kAlongRim = 0.1F;      // m: half of the distance of rim points
-constexpr float kBelowRim = 0.15F;     // m below its top: down beside it, on its side at least
-constexpr double kBlurred = 0.015;     // m, 1 sigma: three of them are a displaced patch
-constexpr float kRaised = 0.03F;       // m: a rim that may be covered
+using surface_rays::kGrazing;
+using surface_rays::kSameSurface;
+
+constexpr float kHidden = 0.1F;     // m before a surfel: from there on something else was seen
+constexpr float kStepGate = 0.5F;   // m: observations farther off the plane belong to something else
+constexpr float kOnRim = 0.1F;      // m across: what is surely coaming around a rim point
+constexpr float kAlongRim = 0.1F;   // m: half of the distance of rim points
+constexpr float kBelowRim = 0.15F;  // m below its top: down beside it, on its side at least
+constexpr double kBlurred = 0.015;  // m, 1 sigma: three of them are a displaced patch
+constexpr float kRaised = 0.03F;    // m: a rim that may be covered
 constexpr double kOtherPlace = PatchEvidence::kReach;  // m: from there on patches mean other surfaces
 constexpr double kJump = 0.05;                         // m: three sigma of a pose that is worth looking at
 constexpr double kGap = 0.25;  // s: two frames without evidence, on which nothing is booked
 // In a shorter time no ship leaves the berth and another one moors there.
 constexpr double kExchange = 300.0;  // s
-// Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
-constexpr float kSharedError = 1.0F / 16.0F;
-
-/// Every ray that meets the plane within kSurfelRadius of the surfel, as far as it is known to be flat, and
-/// was not stopped clearly before it.
-void collect_rays(const ScanView& view, const Point& p_L, const Point& n_L, std::vector<RayEnd>& rays) {
-  rays.clear();
-  const float plane = n_L.dot(p_L);
-  view.visit_around(SphericalGrid::cell(p_L), [&](const Point& s) {
-    const float along = n_L.dot(s);
-    const float range = s.norm();
-    if (std::abs(along) < kGrazing * range) {
-      return;
-    }
-    const float t = plane / along;  // the plane is met at t * s
-    const float besides2 = (t * s - p_L).squaredNorm();
-    const float depth = (1.0F - t) * range;
-    const bool stopped = depth < -Integrity::kBehind;  // before it, by a drop of rain say: it says nothing
-    if (besides2 < kSurfelRadius * kSurfelRadius && !stopped) {
-      rays.push_back({besides2, along - plane, depth});
-    }
-  });
-}
-
-/// Mean offset and worth of the returns that lie on the same surface as the nearest ray's.
-std::pair<double, double> mean_offset(const std::vector<RayEnd>& rays, const RayEnd& nearest) {
-  double sum = nearest.offset;
-  double count = 1.0;
-  for (const RayEnd& ray : rays) {
-    const bool other = &ray != &nearest;
-    if (other && ray.besides2 < kAround * kAround && std::abs(ray.offset - nearest.offset) < kSameSurface) {
-      sum += ray.offset;
-      count += 1.0;
-    }
-  }
-  return {sum / count, count / (1.0 + count * kSharedError)};
-}
 
 /// A rim point in L: upward, and across its strip.
 struct RimAxes {
@@ -102,12 +67,6 @@ bool is_behind_another(const HullMap& map, const Surfel& surfel, const Point& se
     }
   }
   return false;
-}
-
-const RayEnd* nearest_ray(const std::vector<RayEnd>& rays) {
-  const auto nearest = std::min_element(
-      rays.begin(), rays.end(), [](const RayEnd& a, const RayEnd& b) { return a.besides2 < b.besides2; });
-  return nearest == rays.end() ? nullptr : &*nearest;
 }
 
 }  // namespace

@@ -26,6 +26,7 @@
 #include "core/registration/bend.hpp"
 #include "core/tracking/patch_evidence.hpp"
 #include "core/tracking/scan_view.hpp"
+#include "core/tracking/surface_rays.hpp"
 #include "core/tracking/visibility.hpp"
 
 namespace hulltrack {
@@ -43,13 +44,6 @@ struct SurfelObservation {
   Eigen::Vector3d n_W = Eigen::Vector3d::Zero();  // its normal
   double offset = 0.0;  // n . (return - p), m, mean: how far the surface really is along the normal
   double weight = 1.0;  // independent returns that the mean is worth
-};
-
-/// A ray that meets a surfel's plane near it.
-struct RayEnd {
-  float besides2;  // squared distance from the surfel in its plane, m^2
-  float offset;    // n . (return - p), m
-  float depth;     // return's range minus the plane's along the same ray, m
 };
 
 /// A least squares step of observations: the pose's remaining error as the scan sees it.
@@ -98,7 +92,7 @@ struct IntegrityFinding {
 class Integrity {
  public:
   static constexpr float kPlaneGate = 0.15F;  // m
-  static constexpr float kBehind = 0.7F;      // m
+  static constexpr float kBehind = surface_rays::kBehind;
   /// Surfaces are looked at as far as this from the sensor, m: with lasers 2 deg apart the lines of a scan
   /// lie 1.4 m apart there, and every fourth surfel still meets a ray.
   static constexpr double kSight = 40.0;

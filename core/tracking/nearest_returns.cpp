@@ -49,12 +49,8 @@ Cap cap_around(const Point& p_L, float squared) {
 /// Looks around one point in one view.
 class Search {
  public:
-  Search(const ScanView& view, const std::vector<std::uint8_t>& of_hull, std::size_t lidar, const Point& p_W)
-      : view_(view),
-        of_hull_(of_hull),
-        lidar_(lidar),
-        p_L_(view.seen(p_W)),
-        centre_(SphericalGrid::cell(p_L_)) {}
+  Search(const ScanView& view, const std::vector<ReturnOf>& of, std::size_t lidar, const Point& p_W)
+      : view_(view), of_(of), lidar_(lidar), p_L_(view.seen(p_W)), centre_(SphericalGrid::cell(p_L_)) {}
 
   /// Takes the looks first .. last - 1 for candidates nearer than `nearest`. True if after them no other
   /// can be nearer.
@@ -100,14 +96,14 @@ class Search {
     const ScanView::Returns returns = view_.returns(row, first, last);
     for (std::size_t i = 0; i < returns.points_L.size(); ++i) {
       const float squared = (returns.points_L[i] - p_L_).squaredNorm();
-      if (squared < nearest.squared && of_hull_[returns.numbers[i]] != 0) {
+      if (squared < nearest.squared && of_[returns.numbers[i]] == ReturnOf::hull) {
         nearest = {squared, lidar_, returns.numbers[i]};
       }
     }
   }
 
   const ScanView& view_;
-  const std::vector<std::uint8_t>& of_hull_;
+  const std::vector<ReturnOf>& of_;
   std::size_t lidar_;
   Point p_L_;
   SphericalGrid::Cell centre_;
@@ -117,9 +113,7 @@ class Search {
 std::optional<Nearest> find_nearest(const Point& p_W, std::span<const ScanView> views,
                                     const FilteredScan& scan) {
   Nearest nearest;
-  const auto search = [&](std::size_t lidar) {
-    return Search(views[lidar], scan.of_hull[lidar], lidar, p_W);
-  };
+  const auto search = [&](std::size_t lidar) { return Search(views[lidar], scan.of[lidar], lidar, p_W); };
   bool sure = true;
   for (std::size_t i = 0; i < views.size(); ++i) {
     sure = search(i).look(0, kFirstLooks, nearest) && sure;

@@ -19,10 +19,10 @@ struct Seen {
   explicit Seen(const std::vector<Cloud>& returns_W) {
     scan.returns_W = returns_W;
     for (const Cloud& returns : returns_W) {
-      std::vector<std::uint8_t>& of_hull = scan.of_hull.emplace_back();
+      std::vector<ReturnOf>& of = scan.of.emplace_back();
       for (std::size_t i = 0; i < returns.size(); ++i) {
-        of_hull.push_back(i % 5 == 0 ? 0 : 1);
-        if (of_hull.back() != 0) {
+        of.push_back(i % 5 == 0 ? ReturnOf::surroundings : ReturnOf::hull);
+        if (of.back() == ReturnOf::hull) {
           scan.hull_W.push_back(returns[i]);
         }
       }
