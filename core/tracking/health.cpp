@@ -96,6 +96,17 @@ void check_integrity(const Evidence& e, Findings& findings) {
   }
 }
 
+/// The quay's word on the machine. It also tells a hull that really ran from one that only seemed to.
+void check_machine(HealthMemory& memory, const Evidence& e, Findings& findings) {
+  if (e.machine.faults != 0) {
+    findings.add(State::degraded, e.machine.faults, e.machine.reason);
+  }
+  if (e.machine.confirmed) {
+    memory.run.reset();
+    memory.ran_away = false;
+  }
+}
+
 void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& findings) {
   const Eigen::Vector3d& d = e.displacement;
   const bool inside =
@@ -229,6 +240,7 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   Findings findings;
   findings.faults = e.standing;
   check_registration(limits, e, findings);
+  check_machine(memory, e, findings);
   if (e.registered) {
     check_distances(limits, e, findings);
     check_integrity(e, findings);

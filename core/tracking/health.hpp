@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "core/base/status.hpp"
+#include "core/integrity/machine_finding.hpp"
 #include "core/tracking/integrity.hpp"
 #include "core/tracking/metrics.hpp"
 #include "core/tracking/motion_record.hpp"
@@ -51,6 +52,7 @@ struct Evidence {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // of the reference point, m
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // of T_W_H
   IntegrityFinding integrity;
+  MachineFinding machine;
   SearchEvidence search;
 };
 
@@ -83,7 +85,7 @@ struct HealthMemory {
   std::optional<FollowedPose> followed;  // the last pose that the scan did not contradict
   MotionRecord motion;                   // of the followed poses
   std::optional<FastRun> run;
-  bool ran_away = false;  // farther than kLongestRun, until a re-acquire edge
+  bool ran_away = false;  // farther than kLongestRun, until a re-acquire edge or a quay map's word
 };
 
 struct HealthVerdict {

@@ -5,6 +5,7 @@
 
 #include "core/base/text.hpp"
 #include "core/geometry/box.hpp"
+#include "core/integrity/machine_witness.hpp"
 #include "core/tracking/expected_distance.hpp"
 #include "core/tracking/health.hpp"
 #include "core/tracking/integrity.hpp"
@@ -40,6 +41,7 @@ struct HullTracker::Impl {
   PoseFinder finder;
   Visibility visibility;
   Integrity integrity;
+  MachineWitness machine_witness;
   ExpectedDistance expected_distance;
   HealthMemory memory;
   MotionGauge motion;
@@ -53,13 +55,14 @@ struct HullTracker::Impl {
   std::vector<double> distances;
 
   Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
-       std::shared_ptr<const HullMap> m)
+       std::shared_ptr<const HullMap> m, std::shared_ptr<const QuayMap> quay)
       : config(c),
         limits(health_limits(c, half_length(m.get()))),
         map(std::move(m)),
         scan_filter(machine, std::move(sensors), c.hull.region),
         finder(c, *map),
         visibility(std::max(Integrity::kSight, c.health.metric_range)),
+        machine_witness(c.quay, std::move(quay), machine, c.hull.region),
         motion(bounding_box(map->cloud_H())),
         views(scan_filter.sensors().size()) {}
 
@@ -69,6 +72,7 @@ struct HullTracker::Impl {
   [[nodiscard]] PlaneStep certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
                                        TrackResult& result) const;
   void look(const Joints& joints_mid);
+  [[nodiscard]] MachineStand stand(const JointHistory& joints, MeasurementTime time) const;
   DistanceMetrics measure(const Pose& T_W_H);
   IntegrityReport inspect(const Pose& T_W_H);
   /// Returns how many surfels the scan confirms at the pose.
@@ -90,6 +94,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   evidence.standing = inputs.standing;
   if (inputs.reacquire) {
     integrity.forget();
+    machine_witness.forget();
   }
   // The pose is that of the middle of the scan, so the joints must answer there too.
   const JointHistory::Answer mid = joints.at(result.time);
@@ -100,6 +105,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     scan_filter.run(scan, joints, drift(), filtered);
     const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);
+    evidence.machine = machine_witness.look(result.time, filtered, views, stand(joints, result.time));
     const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
     search(evidence, result, confirmed);
     if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
@@ -226,6 +232,21 @@ void HullTracker::Impl::look(const Joints& joints_mid) {
   }
 }
 
+/// After look(). `joints` must answer at `time`.
+MachineStand HullTracker::Impl::stand(const JointHistory& joints, MeasurementTime time) const {
+  MachineStand stand;
+  if (const auto moving = joints.motion_at(time)) {
+    stand.joints = moving->joints;
+    stand.rate = moving->rate;
+  } else {
+    stand.joints = joints.at(time).joints;  // a single sample
+  }
+  for (const ScanView& view : views) {
+    stand.sensor_W += view.T_W_L().translation() / static_cast<double>(views.size());
+  }
+  return stand;
+}
+
 DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H) {
   const Eigen::Matrix3f R = T_W_H.linear().cast<float>();
   const Point t = T_W_H.translation().cast<float>();
@@ -251,8 +272,9 @@ DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H) {
 }
 
 HullTracker::HullTracker(const TrackerConfig& config, const MachineConfig& machine,
-                         std::vector<SensorConfig> sensors, std::shared_ptr<const HullMap> map)
-    : impl_(std::make_unique<Impl>(config, machine, std::move(sensors), std::move(map))) {}
+                         std::vector<SensorConfig> sensors, std::shared_ptr<const HullMap> map,
+                         std::shared_ptr<const QuayMap> quay)
+    : impl_(std::make_unique<Impl>(config, machine, std::move(sensors), std::move(map), std::move(quay))) {}
 HullTracker::~HullTracker() = default;
 HullTracker::HullTracker(HullTracker&&) noexcept = default;
 HullTracker& HullTracker::operator=(HullTracker&&) noexcept = default;

@@ -17,6 +17,7 @@
 #include "core/kinematics/joint_history.hpp"
 #include "core/kinematics/loader_kinematics.hpp"
 #include "core/map/hull_map.hpp"
+#include "core/map/quay_map.hpp"
 #include "core/tracking/metrics.hpp"
 #include "core/tracking/motion_products.hpp"
 #include "core/tracking/tracker_config.hpp"
@@ -61,9 +62,10 @@ struct TrackResult {
 
 class HullTracker {
  public:
-  /// `map` must not be null and is shared, immutable. `sensors` in the order of Scan::lidars.
+  /// `map` must not be null; `quay` may be. Both are shared, immutable. `sensors` in the order of
+  /// Scan::lidars.
   HullTracker(const TrackerConfig& config, const MachineConfig& machine, std::vector<SensorConfig> sensors,
-              std::shared_ptr<const HullMap> map);
+              std::shared_ptr<const HullMap> map, std::shared_ptr<const QuayMap> quay = nullptr);
   ~HullTracker();
   HullTracker(HullTracker&&) noexcept;
   HullTracker& operator=(HullTracker&&) noexcept;

@@ -21,6 +21,13 @@ struct HullConfig {
   double max_yaw = radians(3.5);
 };
 
+/// What is known of the quay besides its map, which is a file (ICD 5).
+struct QuayConfig {
+  bool top_is_witness = true;            // false: height = "off"
+  std::optional<double> height;          // of its top at W's origin, m; empty = learn
+  std::optional<Eigen::Vector2d> slope;  // of its top along X and along Y, rad; empty = learn
+};
+
 enum class RegistrationMethod {
   automatic,       // this version's best
   point_to_point,  // the paper, 2.3
@@ -60,6 +67,7 @@ struct HealthConfig {
 
 struct TrackerConfig {
   HullConfig hull;
+  QuayConfig quay;
   RegistrationConfig registration;
   HealthConfig health;
   MetricsScope metrics_scope = MetricsScope::visible_subset;

@@ -55,8 +55,10 @@ Joints joints_from_plc(double travel_m, double slew_deg, double luff_deg) {
   return {travel_m, radians(slew_deg), radians(luff_deg)};
 }
 
-FramePipeline::FramePipeline(const Config& config, std::shared_ptr<const HullMap> map)
-    : tracker_(config.tracker, config.machine, sensor_configs(config.lidars), std::move(map)) {}
+FramePipeline::FramePipeline(const Config& config, std::shared_ptr<const HullMap> map,
+                             std::shared_ptr<const QuayMap> quay)
+    : tracker_(config.tracker, config.machine, sensor_configs(config.lidars), std::move(map),
+               std::move(quay)) {}
 
 FrameReport FramePipeline::process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs) {
   const auto start = std::chrono::steady_clock::now();

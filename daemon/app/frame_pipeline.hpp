@@ -30,8 +30,9 @@ struct FrameReport {
 
 class FramePipeline {
  public:
-  /// `map` as for HullTracker.
-  FramePipeline(const Config& config, std::shared_ptr<const HullMap> map);
+  /// `map` and `quay` as for HullTracker.
+  FramePipeline(const Config& config, std::shared_ptr<const HullMap> map,
+                std::shared_ptr<const QuayMap> quay = nullptr);
 
   [[nodiscard]] FrameReport process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
 

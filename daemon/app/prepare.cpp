@@ -6,6 +6,7 @@
 
 #include "core/base/text.hpp"
 #include "core/io/map_file.hpp"
+#include "daemon/app/quay_file.hpp"
 #include "daemon/config/read_config.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
@@ -37,6 +38,10 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
       complain(key, problem);
     }
   }
+  Result<QuayFile> quay = read_quay_file(config.quay_file);
+  if (!quay) {
+    complain("quay.map", quay.error().message);
+  }
   if (!config.map_file.empty()) {
     Result<MapFile> map = read_map_file(config.map_file);
     if (!map) {
@@ -48,9 +53,12 @@ Preparation prepare_or_throw(const std::filesystem::path& config_file) {
                                "; no scan could ever match it: make a denser map");
     } else if (reading.config && preparation.problems.empty()) {
       std::string remark = remark_on_dropped(config.map_file, *map);
+      if (!quay->remark.empty()) {
+        remark += (remark.empty() ? "" : "\n") + quay->remark;
+      }
       preparation.prepared =
           Prepared{*std::move(reading.config), std::make_shared<const HullMap>(std::move(map->cloud)),
-                   std::move(remark)};
+                   quay->map, std::move(remark)};
     }
   }
   sort_by_line(preparation.problems);

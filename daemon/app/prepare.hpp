@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/map/hull_map.hpp"
+#include "core/map/quay_map.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/config/problem.hpp"
 
@@ -21,6 +22,7 @@ namespace hulltrack {
 struct Prepared {
   Config config;
   std::shared_ptr<const HullMap> map;
+  std::shared_ptr<const QuayMap> quay;  // nullptr = none is configured
   std::string map_remark;  // what to know of a map that can be used all the same; empty = nothing
 };
 

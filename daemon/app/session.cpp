@@ -16,7 +16,8 @@ Nanoseconds plc_turn_limit(const PlcConfig& plc) { return kTurnLimit + 3 * plc.r
 Session::Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailure on_failure,
                  const RegisterMemory& before)
     : rx_(prepared.config, exchange_, watch_.add("rx", kTurnLimit, steady_now()), log),
-      track_(prepared.config, prepared.map, exchange_, watch_.add("track", kTurnLimit, steady_now())),
+      track_(prepared.config, prepared.map, prepared.quay, exchange_,
+             watch_.add("track", kTurnLimit, steady_now())),
       plc_(prepared.config, exchange_, watch_.add("plc", plc_turn_limit(prepared.config.plc), steady_now()),
            log, before),
       plc_runner_(

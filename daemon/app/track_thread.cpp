@@ -13,12 +13,12 @@ constexpr std::chrono::milliseconds kLongestWait{100};
 
 }  // namespace
 
-TrackThread::TrackThread(const Config& config, std::shared_ptr<const HullMap> map, Exchange& exchange,
-                         Pulse& pulse)
+TrackThread::TrackThread(const Config& config, std::shared_ptr<const HullMap> map,
+                         std::shared_ptr<const QuayMap> quay, Exchange& exchange, Pulse& pulse)
     : exchange_(exchange),
       pulse_(pulse),
       patience_(JointHistory::kMaxGap + config.plc.latency + config.plc.response_timeout),
-      pipeline_(config, std::move(map)) {}
+      pipeline_(config, std::move(map), std::move(quay)) {}
 
 void TrackThread::run(std::stop_token stop) {
   while (!stop.stop_requested()) {

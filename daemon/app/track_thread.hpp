@@ -17,8 +17,9 @@ namespace hulltrack {
 
 class TrackThread {
  public:
-  /// References must outlive this object; `map` as for HullTracker.
-  TrackThread(const Config& config, std::shared_ptr<const HullMap> map, Exchange& exchange, Pulse& pulse);
+  /// References must outlive this object; `map` and `quay` as for HullTracker.
+  TrackThread(const Config& config, std::shared_ptr<const HullMap> map, std::shared_ptr<const QuayMap> quay,
+              Exchange& exchange, Pulse& pulse);
 
   void run(std::stop_token stop);
 

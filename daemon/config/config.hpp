@@ -29,6 +29,7 @@ struct Config {
   MachineConfig machine;
   std::vector<LidarConfig> lidars;  // one or more after reading
   std::filesystem::path map_file;
+  std::filesystem::path quay_file;  // empty = none
   TrackerConfig tracker;
   FramingConfig framing;
   LogConfig log;

@@ -165,7 +165,10 @@ class Reader {
 
   void read_key(const toml::node& node, const Key& key, const std::string& name, const std::string& place,
                 int line) {
-    const auto value = std::visit(Converter{node}, key.get());
+    auto value = std::visit(Converter{node}, key.get());
+    for (auto other = key.others.begin(); !value && other != key.others.end(); ++other) {
+      value = std::visit(Converter{node}, *other);
+    }
     if (value && key.legal(*value)) {
       key.set(*value);
       return;

@@ -113,6 +113,75 @@ Section hull_section(Config& config) {
        angle("max_trim", hull.max_trim, 0.1, 45.0), angle("max_yaw", hull.max_yaw, 0.1, 45.0)}};
 }
 
+constexpr const char* kLearn = "learn";
+constexpr const char* kOff = "off";
+
+Key quay_height(QuayConfig& quay) {
+  constexpr double kMost = 100.0;  // m
+  return {.name = "height",
+          .allowed = "\"learn\", \"off\" or a number from -100.0 to 100.0 (m)",
+          .legal =
+              [](const ConfigValue& value) {
+                const auto* word = std::get_if<std::string>(&value);
+                return word != nullptr ? *word == kLearn || *word == kOff
+                                       : std::abs(std::get<double>(value)) <= kMost;
+              },
+          .get = [&quay]() -> ConfigValue {
+            if (quay.height) {
+              return *quay.height;
+            }
+            return std::string(quay.top_is_witness ? kLearn : kOff);
+          },
+          .set =
+              [&quay](const ConfigValue& value) {
+                const auto* word = std::get_if<std::string>(&value);
+                quay.top_is_witness = word == nullptr || *word != kOff;
+                quay.height = word == nullptr ? std::optional(std::get<double>(value)) : std::nullopt;
+              },
+          .words = {kLearn, kOff},
+          .others = {0.0}};
+}
+
+Key quay_slope(QuayConfig& quay) {
+  constexpr double kMost = 5.0;  // deg: nobody could load on a quay that is steeper
+  return {.name = "slope",
+          .allowed = "\"learn\" or two numbers [x, y] from -5.0 to 5.0 (deg)",
+          .legal =
+              [](const ConfigValue& value) {
+                const auto* numbers = std::get_if<Numbers>(&value);
+                return numbers == nullptr ? std::get<std::string>(value) == kLearn
+                                          : numbers->size() == 2 && std::abs((*numbers)[0]) <= kMost &&
+                                                std::abs((*numbers)[1]) <= kMost;
+              },
+          .get = [&quay]() -> ConfigValue {
+            if (quay.slope) {
+              return Numbers{tidy_degrees(quay.slope->x()), tidy_degrees(quay.slope->y())};
+            }
+            return std::string(kLearn);
+          },
+          .set =
+              [&quay](const ConfigValue& value) {
+                const auto* numbers = std::get_if<Numbers>(&value);
+                quay.slope =
+                    numbers == nullptr
+                        ? std::nullopt
+                        : std::optional(Eigen::Vector2d(radians((*numbers)[0]), radians((*numbers)[1])));
+              },
+          .words = {kLearn},
+          .others = {Numbers{}}};
+}
+
+Section quay_section(Config& config) {
+  return {
+      "quay",
+      {quay_height(config.tracker.quay), quay_slope(config.tracker.quay),
+       Key{.name = "map",
+           .allowed = "the name of a PCD or PLY file, or \"\" for none",
+           .legal = [](const ConfigValue& value) { return is_file_name(std::get<std::string>(value)); },
+           .get = [&config] { return config.quay_file.string(); },
+           .set = [&config](const ConfigValue& value) { config.quay_file = std::get<std::string>(value); }}}};
+}
+
 Section tracking_section(Config& config) {
   RegistrationConfig& registration = config.tracker.registration;
   return {"tracking",
@@ -167,6 +236,7 @@ std::vector<Section> config_sections(Config& config) {
           {"machine.slew", pose(config.machine.slew)},
           {"machine.luff", pose(config.machine.luff)},
           hull_section(config),
+          quay_section(config),
           tracking_section(config),
           health_section(config.tracker.health),
           {"log",

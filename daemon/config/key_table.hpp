@@ -29,6 +29,8 @@ struct Key {
   std::function<void(const ConfigValue&)> set;    // precondition: legal
   bool required = false;
   std::vector<std::string> words = {};  // the legal texts, where they can be listed
+  /// Values of other alternatives that it takes as well: a number beside a word, say.
+  std::vector<ConfigValue> others = {};
 };
 
 /// A TOML table: "plc.read", or "plc.read.travel" for an inline one.

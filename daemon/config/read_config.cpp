@@ -78,6 +78,9 @@ void resolve_paths(Config& config, const std::filesystem::path& file) {
   if (!config.map_file.empty()) {
     config.map_file = (folder / config.map_file).lexically_normal();
   }
+  if (!config.quay_file.empty()) {
+    config.quay_file = (folder / config.quay_file).lexically_normal();
+  }
   for (LidarConfig& lidar : config.lidars) {
     if (!lidar.calibration.empty()) {
       lidar.calibration = (folder / lidar.calibration).lexically_normal().string();

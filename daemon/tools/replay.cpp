@@ -9,6 +9,7 @@
 #include "core/io/map_file.hpp"
 #include "core/io/plc_csv.hpp"
 #include "daemon/app/frame_pipeline.hpp"
+#include "daemon/app/quay_file.hpp"
 #include "daemon/config/read_config.hpp"
 #include "daemon/tools/frame_csv.hpp"
 #include "daemon/tools/recording_player.hpp"
@@ -111,12 +112,20 @@ std::shared_ptr<const HullMap> load_map(const std::filesystem::path& file) {
   return std::make_shared<const HullMap>(std::move(map.cloud));
 }
 
+std::shared_ptr<const QuayMap> load_quay(const std::filesystem::path& file) {
+  QuayFile quay = value_or_throw(read_quay_file(file));
+  if (!quay.remark.empty()) {
+    std::fprintf(stderr, "%s\n", quay.remark.c_str());
+  }
+  return quay.map;
+}
+
 void replay(const ReplayOptions& options) {
   must(check_recording_folder(options.folder));
   const Config config = load_config(options);
   std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
   ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
-  FramePipeline pipeline(config, load_map(config.map_file));
+  FramePipeline pipeline(config, load_map(config.map_file), load_quay(config.quay_file));
   std::optional<FrameCsv> csv;
   if (!options.csv.empty()) {
     csv = value_or_throw(FrameCsv::create(options.csv));

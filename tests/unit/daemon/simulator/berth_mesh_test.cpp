@@ -69,7 +69,8 @@ TEST(QuayGround, ItsMeshIsItsHeight) {
     for (float y = -89.0F; y < -0.1F; y += 2.3F) {
       const auto hit = scene.cast({x, y, 50.0F}, {0.0F, 0.0F, -1.0F}, 100.0F);
       ASSERT_TRUE(hit);
-      // Half a step of 2 m from the nearest corner: 1/8 of 2 m squared times the sines' curvature, 4 mm at most.
+      // Half a step of 2 m from the nearest corner: 1/8 of 2 m squared times the sines' curvature, 4 mm at
+      // most.
       EXPECT_NEAR(50.0F - hit->distance, quay_top(x, y), 0.004F);
     }
 }

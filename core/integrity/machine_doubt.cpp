@@ -1,0 +1,109 @@
+#include "core/integrity/machine_doubt.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/text.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr double kNoiseSigmas = 4.0;
+const double kSpread = std::sqrt(3.0);
+
+/// Twists along the measured directions: one column each.
+Eigen::MatrixXd along(const Misplacement& seen, const std::vector<Twist>& twists) {
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(seen.measured.size()),
+                          static_cast<Eigen::Index>(twists.size()));
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+      columns(i, k) =
+          seen.measured[static_cast<std::size_t>(i)].direction.dot(twists[static_cast<std::size_t>(k)]);
+    }
+  }
+  return columns;
+}
+
+JointDoubt doubt_joint(const Eigen::VectorXd& h, const Eigen::VectorXd& y, const Eigen::MatrixXd& S_inverse,
+                       const Eigen::MatrixXd& G, const Eigen::VectorXd& noise) {
+  const Eigen::VectorXd weights = S_inverse * h;
+  const double worth = h.dot(weights);
+  if (!(worth > 0.0)) {
+    return {0.0, std::numeric_limits<double>::infinity(), 0.0};
+  }
+  const Eigen::VectorXd wear = (G.transpose() * weights).cwiseAbs();
+  const double most_of_wear = std::min(wear.sum(), kSpread * wear.norm());
+  const double most_of_noise = kNoiseSigmas * weights.cwiseProduct(noise).norm();
+  const double z = weights.dot(y);
+  return {z / worth, (most_of_wear + most_of_noise) / worth, z * z / worth};
+}
+
+}  // namespace
+
+MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
+                           const Misplacement& seen) {
+  MachineDoubt doubt;
+  const auto n = static_cast<Eigen::Index>(seen.measured.size());
+  if (n == 0) {
+    for (JointDoubt& joint : doubt.joints) {
+      joint.hidden = std::numeric_limits<double>::infinity();
+    }
+    return doubt;
+  }
+  Eigen::VectorXd y(n);
+  Eigen::VectorXd noise(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    y[i] = seen.measured[static_cast<std::size_t>(i)].offset;
+    noise[i] = seen.measured[static_cast<std::size_t>(i)].sigma;
+  }
+  const Eigen::MatrixXd G = along(seen, wear_twists(machine, stand, seen.centre_W));
+  Eigen::MatrixXd S = G * G.transpose();
+  S.diagonal() += noise.cwiseAbs2();
+  const Eigen::MatrixXd S_inverse = S.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+
+  double best = 0.0;
+  for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+    const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
+    JointDoubt& here = doubt.joints.at(static_cast<std::size_t>(joint));
+    here = doubt_joint(h, y, S_inverse, G, noise);
+    if (std::abs(here.reads_too_much) > here.hidden && here.gain > best) {
+      best = here.gain;
+      doubt.accused = joint;
+    }
+  }
+  doubt.strain = y.dot(S_inverse * y);
+  // Wear that is spread evenly between its limits has a mean square of a third, along every direction that S
+  // whitens; nine times that is three sigma.
+  doubt.most_strain = std::min(static_cast<double>(G.cols()), 3.0 * static_cast<double>(n));
+  doubt.beyond_class = doubt.accused || doubt.strain > doubt.most_strain;
+  return doubt;
+}
+
+std::string accusation(JointName joint, double amount) {
+  const bool turns = joint != JointName::travel;
+  return format_text(
+      "the quay lies as if %s read %.2f %s too %s: its sign, scale, bias or latency, or an encoder "
+      "that stands still?",
+      joint_name(joint), std::abs(turns ? degrees(amount) : amount), turns ? "deg" : "m",
+      amount > 0.0 ? "much" : "little");
+}
+
+std::string describe(const MachineDoubt& doubt, const Misplacement& seen) {
+  if (!doubt.beyond_class) {
+    return {};
+  }
+  if (doubt.accused) {
+    return accusation(*doubt.accused,
+                      doubt.joints.at(static_cast<std::size_t>(*doubt.accused)).reads_too_much);
+  }
+  const Eigen::Vector3d turn = seen.twist.head<3>() * degrees(1.0);
+  const Eigen::Vector3d shift = seen.twist.tail<3>();
+  return format_text(
+      "the quay lies %.2f, %.2f, %.2f m and %.2f, %.2f, %.2f deg from where joints and mount put "
+      "it: a mount, or several joints, are not what is configured",
+      shift.x(), shift.y(), shift.z(), turn.x(), turn.y(), turn.z());
+}
+
+}  // namespace hulltrack

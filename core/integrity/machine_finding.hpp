@@ -1,0 +1,16 @@
+// What the witnesses of the machine say of it in a frame. A plain value.
+#pragma once
+
+#include <string>
+
+#include "core/base/status.hpp"
+
+namespace hulltrack {
+
+struct MachineFinding {
+  Faults faults = 0;       // plc_value while the machine is contradicted
+  std::string reason;      // with figures; empty without a fault
+  bool confirmed = false;  // a quay map confirms all six axes in this very frame
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,36 @@
+// How would wear or a fault of the machine show: by which twist is the sensor then not where it is put?
+//
+// A machine that is worn within its class (ICD 3.1) is nobody's fault: boom sag, backlash, drift of encoders,
+// slip of the travel, a mount and a latency that are a little off. Each moves the sensor along a twist of its
+// own, by up to its class. A joint that reads `a` too much moves it by `a` along its joint's axis.
+// Frame W, metres, radians. Pure.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/geometry/se3.hpp"
+#include "core/kinematics/joint_history.hpp"
+#include "core/kinematics/loader_kinematics.hpp"
+
+namespace hulltrack {
+
+enum class JointName { travel, slew, luff };
+[[nodiscard]] const char* joint_name(JointName joint);
+
+/// Where the machine stands while a scan is taken.
+struct MachineStand {
+  Joints joints;
+  Joints rate;  // a second
+  Eigen::Vector3d sensor_W = Eigen::Vector3d::Zero();
+};
+
+/// Twist [rotation; translation] about `centre_W` for one unit (rad, m) that the joint reads too much.
+[[nodiscard]] Twist joint_twist(const MachineConfig& machine, const MachineStand& stand, JointName joint,
+                                const Eigen::Vector3d& centre_W);
+
+/// All that wear within the class can do, each term at its limit: twists about `centre_W`.
+[[nodiscard]] std::vector<Twist> wear_twists(const MachineConfig& machine, const MachineStand& stand,
+                                             const Eigen::Vector3d& centre_W);
+
+}  // namespace hulltrack

@@ -1,0 +1,132 @@
+#include "core/integrity/machine_witness.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "core/base/text.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr int kChargesNeeded = 3;
+
+// Of returns near a plane most are on it; where nothing is in its place a sixth agrees by chance: of offsets
+// spread over the gate those within 10 cm. The limit is in the middle; at 60 returns it is three sigma off
+// either.
+constexpr double kLeastShare = 0.5;
+constexpr std::uint32_t kFewestObservations = 60;
+
+// A plane that is where it should be is seen through only when what stood there has left: a lorry, a stack of
+// covers. Half of a class of surfaces does not leave within a tide. Where all is in place one plane in a
+// hundred is seen through, at an edge: of 12 a half are not.
+constexpr double kMostSeenThrough = 0.5;
+constexpr double kFewestReached = 12.0;
+// Twenty frames, two seconds, are remembered.
+constexpr double kFading = 0.95;
+
+std::optional<QuayPlane> known_top(const QuayConfig& quay) {
+  return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
+}
+
+}  // namespace
+
+MachineWitness::MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map,
+                               const MachineConfig& machine, const std::optional<Box>& region_W)
+    : map_(std::move(map)),
+      top_(known_top(quay)),
+      machine_(machine),
+      region_W_(region_W),
+      sight_(region_W.has_value()) {}
+
+MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& scan,
+                                    std::span<const ScanView> views, const MachineStand& stand) {
+  if (!has_quay()) {
+    return {};
+  }
+  if (last_look_ && time - *last_look_ > JointHistory::kMaxGap) {
+    forget_sight();  // the joints may be others by now
+  }
+  last_look_ = time;
+  const QuaySighting& sighting =
+      map_ != nullptr ? sight_.look_for(*map_, scan, views) : sight_.look_for(*top_, scan);
+  remember(sighting);
+  seen_ = find_misplacement(sighting.observations);
+  Verdict verdict = judge(stand);
+  const bool acquitted = !standing_ || acquits(verdict);
+  charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : verdict.known ? 0 : charges_in_a_row_;
+  if (verdict.charge && charges_in_a_row_ >= kChargesNeeded) {
+    standing_ = std::move(verdict.charge);
+  } else if (acquitted) {
+    standing_.reset();
+  }
+  const bool in_place = verdict.known && !verdict.charge;
+  return {standing_ ? fault::plc_value : Faults{0}, standing_ ? standing_->reason : std::string{},
+          in_place && map_ != nullptr && seen_.holds_all()};
+}
+
+MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
+  Verdict verdict;
+  if (std::string through = seen_through(); !through.empty()) {
+    verdict.known = true;
+    verdict.charge = Charge{std::move(through), std::nullopt, 0.0};
+    return verdict;
+  }
+  const bool few = seen_.observations < kFewestObservations || seen_.measured.empty();
+  if (few || double(seen_.agreeing) < kLeastShare * double(seen_.observations)) {
+    return verdict;  // none of the quay in view, or other things lie there
+  }
+  verdict.known = true;
+  verdict.doubt = doubt_machine(machine_, stand, seen_);
+  if (verdict.doubt.beyond_class) {
+    const auto& joint = verdict.doubt.accused;
+    verdict.charge =
+        Charge{describe(verdict.doubt, seen_), joint,
+               joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0};
+  }
+  return verdict;
+}
+
+/// Would this frame have shown what the machine is charged with, and does not?
+bool MachineWitness::acquits(const Verdict& verdict) const {
+  if (!verdict.known || verdict.charge) {
+    return false;
+  }
+  if (!standing_->joint) {
+    return seen_.holds_all();
+  }
+  return verdict.doubt.joints.at(static_cast<std::size_t>(*standing_->joint)).hidden <
+         std::abs(standing_->amount);
+}
+
+void MachineWitness::remember(const QuaySighting& sighting) {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    planes_[i].reached = kFading * planes_[i].reached + sighting.planes[i].reached;
+    planes_[i].seen_through = kFading * planes_[i].seen_through + sighting.planes[i].seen_through;
+  }
+}
+
+/// In words, if rays go through where the quay should be.
+std::string MachineWitness::seen_through() const {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const Memory& of_class = planes_[i];
+    if (of_class.reached >= kFewestReached && of_class.seen_through > kMostSeenThrough * of_class.reached) {
+      return format_text(
+          "the scan sees through %.0f %% of the quay's %s surfaces where joints and mount put them",
+          100.0 * of_class.seen_through / of_class.reached, surface_class_name(static_cast<SurfaceClass>(i)));
+    }
+  }
+  return {};
+}
+
+void MachineWitness::forget_sight() {
+  sight_.forget();
+  planes_ = {};
+  charges_in_a_row_ = 0;
+}
+
+void MachineWitness::forget() {
+  forget_sight();
+  standing_.reset();
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,139 @@
+#include "core/integrity/quay_sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hulltrack {
+namespace {
+
+// Within this of a plane a ray has met it, m.
+constexpr float kOnPlane = 0.15F;
+
+bool in_reach(const QuayMap::Tile& tile, const Point& sensor_W) {
+  const float reach = QuaySight::kFarthest + tile.radius;
+  return (tile.middle_W - sensor_W).squaredNorm() < reach * reach;
+}
+
+}  // namespace
+
+Eigen::Vector3d QuayPlane::normal() const {
+  return Eigen::Vector3d(-std::tan(slope.x()), -std::tan(slope.y()), 1.0).normalized();
+}
+
+double QuayPlane::above(const Eigen::Vector3d& p_W) const {
+  return normal().dot(p_W - Eigen::Vector3d(0.0, 0.0, height));
+}
+
+const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
+                                        std::span<const ScanView> views) {
+  choose_returns(scan);
+  nearest_.resize(returns_W_.size());
+  map.tree().nearest(returns_W_, kGate, nearest_);
+  for (std::size_t i = 0; i < returns_W_.size(); ++i) {
+    if (nearest_[i].index == Neighbour::kNone) {
+      continue;
+    }
+    const QuayMap::Plane& plane = map.planes()[nearest_[i].index];
+    if (plane.holds(returns_W_[i], static_cast<double>(kGate))) {
+      observe(plane.surface, returns_W_[i], plane.normal_W.cast<double>(), plane.offset(returns_W_[i]));
+    }
+  }
+  for (const ScanView& view : views) {
+    for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
+      look_through(map, surface, view);
+    }
+  }
+  return gather();
+}
+
+const QuaySighting& QuaySight::look_for(const QuayPlane& top, const FilteredScan& scan) {
+  choose_returns(scan);
+  const Eigen::Vector3d n_W = top.normal();
+  for (const Point& p : returns_W_) {
+    if (const double offset = top.above(p.cast<double>()); std::abs(offset) <= static_cast<double>(kGate)) {
+      observe(SurfaceClass::horizontal, p, n_W, offset);
+    }
+  }
+  return gather();
+}
+
+void QuaySight::forget() {
+  for (auto& of_class : recent_) {
+    of_class.clear();
+  }
+}
+
+void QuaySight::observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W,
+                        double offset) {
+  recent_.at(static_cast<std::size_t>(surface))
+      .push_back({turn_, {return_W.cast<double>() - offset * n_W, n_W, offset}});
+}
+
+const QuaySighting& QuaySight::gather() {
+  seen_.observations.clear();
+  for (auto& of_class : recent_) {
+    while (!of_class.empty() && (of_class.size() > kOfClass || turn_ - of_class.front().turn >= kFrames)) {
+      of_class.pop_front();
+    }
+    for (const Recent& recent : of_class) {
+      seen_.observations.push_back(recent.observation);
+    }
+  }
+  return seen_;
+}
+
+/// Begins a frame: takes returns that may be the quay's evenly out of the scan.
+void QuaySight::choose_returns(const FilteredScan& scan) {
+  seen_.planes = {};
+  returns_W_.clear();
+  ++turn_;
+  const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;
+  std::size_t all = 0;
+  for (const auto& of : scan.of) {
+    all += static_cast<std::size_t>(std::count(of.begin(), of.end(), wanted));
+  }
+  const std::size_t stride = std::max<std::size_t>(1, all / kReturns);
+  std::size_t number = turn_ % stride;
+  for (std::size_t lidar = 0; lidar < scan.of.size(); ++lidar) {
+    for (std::size_t i = 0; i < scan.of[lidar].size(); ++i) {
+      if (scan.of[lidar][i] == wanted && ++number == stride) {
+        returns_W_.push_back(scan.returns_W[lidar][i]);
+        number = 0;
+      }
+    }
+  }
+}
+
+void QuaySight::look_through(const QuayMap& map, std::size_t surface, const ScanView& view) {
+  const Point sensor_W = view.T_W_L().translation().cast<float>();
+  const Eigen::Matrix3f R_L_W = view.T_W_L().linear().transpose().cast<float>();
+  std::size_t near = 0;
+  for (const QuayMap::Tile& tile : map.tiles(surface)) {
+    near += in_reach(tile, sensor_W) ? tile.count : 0;
+  }
+  const std::size_t stride = std::max<std::size_t>(1, near / kProbes);
+  std::size_t next = turn_ % stride;  // counted over the tiles in reach
+  for (const QuayMap::Tile& tile : map.tiles(surface)) {
+    if (!in_reach(tile, sensor_W)) {
+      continue;
+    }
+    for (; next < tile.count; next += stride) {
+      const QuayMap::Plane& plane = map.planes()[tile.first + next];
+      const Point p_L = view.seen(plane.centre_W);
+      const SphericalGrid::Cell cell = SphericalGrid::cell(p_L);
+      const float range = p_L.norm();
+      if (range > kFarthest || !view.looks_at(cell) || view.hidden(cell, range)) {
+        continue;
+      }
+      collect_rays(view, p_L, R_L_W * plane.normal_W, rays_);
+      if (const RayEnd* nearest = nearest_ray(rays_)) {
+        const bool through = std::abs(nearest->offset) > kOnPlane && nearest->depth > surface_rays::kBehind;
+        seen_.planes[surface].reached += 1;
+        seen_.planes[surface].seen_through += through ? 1 : 0;
+      }
+    }
+    next -= tile.count;
+  }
+}
+
+}  // namespace hulltrack

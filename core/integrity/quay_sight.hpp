@@ -1,0 +1,96 @@
+// Where does the scan see the quay, against where it stands?
+//
+// The quay does not move in W, so what the scan finds beside its place says how far the sensor is from where
+// joints and mounts put it, whatever the ship does. Two sources: the planes of a quay map, and the quay's top
+// as one large plane. A return near a plane observes it. Besides, planes of the map are looked for along the
+// scan's rays: those that rays have gone through are not where they should be.
+// Returns on the hull are left out by its region; without one every return is looked at, and only a map can
+// tell which are the quay's. The hull's drift within a scan is in the returns too (scan_filter.hpp): below
+// 2 cm at hull.max_speed.
+// Frames W and L, metres. Thread rule: one owner, scratch is kept. Cost: bounded, whatever the map's and the
+// scan's size: kReturns returns and kProbes planes of each class a frame, others each frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "core/filter/scan_filter.hpp"
+#include "core/map/quay_map.hpp"
+#include "core/tracking/scan_view.hpp"
+#include "core/tracking/surface_rays.hpp"
+
+namespace hulltrack {
+
+/// The quay's top: z = height + tan(slope.x) * x + tan(slope.y) * y in W.
+struct QuayPlane {
+  double height = 0.0;                                           // m, at W's origin
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();               // rad, along X and along Y
+  [[nodiscard]] Eigen::Vector3d normal() const;                  // unit, upward
+  [[nodiscard]] double above(const Eigen::Vector3d& p_W) const;  // along the normal, m
+};
+
+/// A piece of the quay that a return has met.
+struct QuayObservation {
+  Eigen::Vector3d p_W;  // where it is
+  Eigen::Vector3d n_W;  // its unit normal
+  double offset;        // n . (return - p), m
+};
+
+/// Planes of the map of one class that rays reached.
+struct QuayCount {
+  std::uint32_t reached = 0;
+  std::uint32_t seen_through = 0;
+};
+
+struct QuaySighting {
+  std::vector<QuayObservation> observations;        // of the last frames
+  std::array<QuayCount, QuayMap::kClasses> planes;  // of this frame
+};
+
+class QuaySight {
+ public:
+  static constexpr std::size_t kReturns = 300;   // a frame
+  static constexpr std::uint32_t kProbes = 300;  // a frame, class and LiDAR
+  /// Observations are kept for so many frames, a second, and of each class the newest: few returns are of
+  /// walls, and most of the quay's top.
+  static constexpr std::uint32_t kFrames = 10;
+  static constexpr std::size_t kOfClass = 150;
+  static constexpr float kGate = 0.6F;       // m: what lies farther off belongs to something else
+  static constexpr float kFarthest = 60.0F;  // m from the sensor
+
+  /// `has_region`: the scan was cropped to the hull's region, so that what is outside is not hull.
+  explicit QuaySight(bool has_region) : has_region_(has_region) {}
+
+  /// What the scan shows of a map's planes. The answer lives until the next call.
+  [[nodiscard]] const QuaySighting& look_for(const QuayMap& map, const FilteredScan& scan,
+                                             std::span<const ScanView> views);
+
+  /// Of the quay's top. Precondition: there is a region.
+  [[nodiscard]] const QuaySighting& look_for(const QuayPlane& top, const FilteredScan& scan);
+
+  /// What was observed is of other joints than what comes.
+  void forget();
+
+ private:
+  void choose_returns(const FilteredScan& scan);
+  void observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);
+  const QuaySighting& gather();
+  void look_through(const QuayMap& map, std::size_t surface, const ScanView& view);
+
+  bool has_region_;
+  std::uint32_t turn_ = 0;  // which part of the returns and planes is looked at
+  Cloud returns_W_;
+  std::vector<Neighbour> nearest_;
+  std::vector<RayEnd> rays_;
+  struct Recent {
+    std::uint32_t turn;
+    QuayObservation observation;
+  };
+  std::array<std::deque<Recent>, QuayMap::kClasses> recent_;
+  QuaySighting seen_;
+};
+
+}  // namespace hulltrack

@@ -1,0 +1,126 @@
+#include "core/integrity/machine_witness.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/quay_scene.hpp"
+
+namespace hulltrack {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::misplaced;
+using testing::quay_cloud;
+using testing::quay_frame;
+using testing::quay_machine;
+using testing::QuayFrame;
+
+const Joints kWorking{0.0, radians(80.0), radians(-2.0)};
+const Box kRegion{{-95.0F, 0.6F, -10.0F}, {95.0F, 45.0F, 25.0F}};
+
+std::shared_ptr<const QuayMap> quay_map() {
+  static const auto map = std::make_shared<const QuayMap>(quay_cloud());
+  return map;
+}
+
+/// Frames at 10 Hz of a machine whose joints read something else than they should.
+class Frames {
+ public:
+  explicit Frames(std::shared_ptr<const QuayMap> map = quay_map(), const QuayConfig& quay = {})
+      : witness_(quay, std::move(map), quay_machine(), kRegion) {}
+
+  MachineFinding run(int frames, const Joints& too_much, const std::vector<std::size_t>& surfaces = {0, 1, 2}) {
+    MachineFinding finding;
+    for (int i = 0; i < frames; ++i) {
+      const Joints reported{kWorking.d_x + too_much.d_x, kWorking.theta_r + too_much.theta_r,
+                            kWorking.theta_p + too_much.theta_p};
+      const QuayFrame frame =
+          quay_frame(reported, misplaced(reported, kWorking), static_cast<unsigned>(frame_), 400, surfaces);
+      finding = witness_.look(MeasurementTime{milliseconds(100) * frame_++}, frame.scan, frame.views, frame.stand);
+    }
+    return finding;
+  }
+  MachineWitness& witness() { return witness_; }
+
+ private:
+  MachineWitness witness_;
+  int frame_ = 0;
+};
+
+TEST(MachineWitness, AQuayInItsPlaceConfirmsAllSixAxes) {
+  Frames frames;
+  for (int i = 0; i < 30; ++i) {
+    const MachineFinding finding = frames.run(1, {});
+    EXPECT_EQ(finding.faults, 0) << finding.reason;
+    EXPECT_TRUE(i < 2 || finding.confirmed) << i;
+  }
+}
+
+TEST(MachineWitness, AJointBeyondItsClassTakesHealthWithinHalfASecond) {
+  const std::vector<std::pair<Joints, const char*>> cases = {{{0.25, 0.0, 0.0}, "travel"},
+                                                             {{-0.25, 0.0, 0.0}, "travel"},
+                                                             {{0.0, radians(0.7), 0.0}, "slew"},
+                                                             {{0.0, 0.0, radians(-1.2)}, "luff"}};
+  for (const auto& [too_much, joint] : cases) {
+    Frames frames;
+    frames.run(10, {});
+    EXPECT_EQ(frames.run(1, too_much).faults, 0) << "one frame may be wrong";
+    const MachineFinding finding = frames.run(14, too_much);
+    EXPECT_EQ(finding.faults, fault::plc_value) << joint;
+    EXPECT_NE(finding.reason.find(joint), std::string::npos) << finding.reason;
+    EXPECT_FALSE(finding.confirmed);
+  }
+}
+
+TEST(MachineWitness, AMachineThatIsMetresOffSeesThroughTheQuaysWalls) {
+  Frames frames;
+  const MachineFinding finding = frames.run(20, {4.0, 0.0, 0.0});
+  EXPECT_EQ(finding.faults, fault::plc_value);
+  EXPECT_NE(finding.reason.find("transverse"), std::string::npos) << finding.reason;
+}
+
+TEST(MachineWitness, AChargeStandsUntilASightThatWouldHaveShownItDoesNot) {
+  Frames frames;
+  frames.run(20, {0.3, 0.0, 0.0});
+  EXPECT_NE(frames.run(20, {0.3, 0.0, 0.0}, {0}).faults, 0) << "of the top alone nobody sees a wrong travel";
+  EXPECT_EQ(frames.run(20, {}).faults, 0);
+}
+
+TEST(MachineWitness, AReacquireEdgeForgetsButSwitchesNothingOff) {
+  Frames frames;
+  frames.run(20, {0.3, 0.0, 0.0});
+  frames.witness().forget();
+  EXPECT_EQ(frames.run(1, {0.3, 0.0, 0.0}).faults, 0);
+  EXPECT_NE(frames.run(10, {0.3, 0.0, 0.0}).faults, 0);
+}
+
+TEST(MachineWitness, AScanWithoutTheQuayChangesNothing) {
+  Frames frames;
+  frames.run(20, {0.3, 0.0, 0.0});
+  EXPECT_NE(frames.run(30, {}, {}).faults, 0);
+  Frames honest;
+  const MachineFinding finding = honest.run(30, {}, {});
+  EXPECT_EQ(finding.faults, 0);
+  EXPECT_FALSE(finding.confirmed);
+}
+
+TEST(MachineWitness, TheTopAloneShowsLuffAndConfirmsNothing) {
+  QuayConfig quay;
+  quay.height = 0.0;
+  quay.slope = Eigen::Vector2d::Zero();
+  Frames frames(nullptr, quay);
+  const MachineFinding honest = frames.run(20, {});
+  EXPECT_EQ(honest.faults, 0) << honest.reason;
+  EXPECT_FALSE(honest.confirmed);
+  EXPECT_EQ(frames.run(20, {0.0, 0.0, radians(1.5)}).faults, fault::plc_value);
+  Frames travelling(nullptr, quay);
+  EXPECT_EQ(travelling.run(20, {3.0, 0.0, 0.0}).faults, 0) << "a plane looks the same everywhere along itself";
+}
+
+TEST(MachineWitness, WithoutQuayItSaysNothing) {
+  Frames frames(nullptr);
+  EXPECT_FALSE(frames.witness().has_quay());
+  EXPECT_EQ(frames.run(20, {3.0, 0.0, 0.0}).faults, 0);
+}
+
+}  // namespace
+}  // namespace hulltrack
