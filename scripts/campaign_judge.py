@@ -53,11 +53,12 @@ class Verdict:
 
 
 def read_table(path):
-    """Columns of a CSV file by name: t_ns as integers, everything else as float with NaN for empty."""
+    """Columns of a CSV file by name: t_ns as integers, reason as text, all else as float with NaN for empty."""
     with open(path, newline="") as stream:
         header, *rows = csv.reader(stream)
     columns = dict(zip(header, zip(*rows) if rows else [()] * len(header)))
-    return {name: np.array(values, dtype=np.int64) if name == "t_ns" else
+    kinds = {"t_ns": np.int64, "reason": str}
+    return {name: np.array(values, dtype=kinds[name]) if name in kinds else
             np.array([float(v) if v else math.nan for v in values]) for name, values in columns.items()}
 
 

@@ -2,6 +2,7 @@
 import math
 import pathlib
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -43,6 +44,18 @@ def covariance(count, **entries):
     """Columns of a covariance that is the identity but for the entries."""
     diagonal = {name: 1.0 for name in judge.COVARIANCE if name.split("_")[1] == name.split("_")[2]}
     return {name: np.full(count, {**diagonal, **entries}.get(name, 0.0)) for name in judge.COVARIANCE}
+
+
+class Tables(unittest.TestCase):
+    def test_numbers_are_numbers_and_reasons_stay_words(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".csv") as table:
+            table.write('t_ns,health,x,reason\n1767251400050000001,1,,\n'
+                        '1767251400150000001,0,0.5,"slew, or luff: off"\n')
+            table.flush()
+            columns = judge.read_table(table.name)
+        self.assertEqual(list(columns["t_ns"]), [1767251400050000001, 1767251400150000001])
+        self.assertTrue(math.isnan(columns["x"][0]))
+        self.assertEqual(list(columns["reason"]), ["", "slew, or luff: off"])
 
 
 class Errors(unittest.TestCase):
