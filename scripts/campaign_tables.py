@@ -4,7 +4,8 @@ import campaign_judge as judge
 FORMATS = {"avail_%": ".2f", "rms_mm": ".1f", "p95_mm": ".1f", "p99_mm": ".1f", "max_mm": ".1f", "rms_deg": ".3f",
            "max_deg": ".3f", "notice_s": ".2f", "back_s": ".2f", "nees": ".1f", "band_%": ".1f", "bend_mm": ".0f",
            "ms_p50": ".1f", "ms_p99": ".1f", "no_pose_%": ".1f", "off_%": ".1f", "any_p50_m": ".3f", "any_p95_m": ".3f",
-           "any_p50_deg": ".3f", "any_p95_deg": ".3f"}
+           "any_p50_deg": ".3f", "any_p95_deg": ".3f", "worst_m": ".3f", "worst_deg": ".3f", "fell_s": ".1f",
+           "until_s": ".1f"}
 HEALTH = ["frames", "could", "avail_%", "healthy", "false", "gross", "notice_s", "back_s", "ms_p50", "ms_p99"]
 ERROR = ["rms_mm", "p95_mm", "p99_mm", "max_mm", "rms_deg", "max_deg", "nees", "band_%", "bend_mm"]
 ANY_POSE = ["no_pose_%", "off_%", "any_p50_m", "any_p95_m", "any_p50_deg", "any_p95_deg"]
@@ -27,7 +28,7 @@ def rows(verdicts, scenarios, methods):
 def cell(column, value):
     if value is None:
         return "-"
-    if column in ("notice_s", "back_s") and value == float("inf"):
+    if column in ("notice_s", "back_s", "fell_s") and value == float("inf"):
         return "never"
     return format(value, FORMATS.get(column, ""))
 
@@ -53,7 +54,7 @@ def side_by_side(figures, methods, columns):
 
 
 def flush_left(lines):
-    return [name in ("scenario", "method") for name in lines[0]]
+    return [name in ("scenario", "method", "attack") for name in lines[0]]
 
 
 def render(lines):

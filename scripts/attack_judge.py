@@ -1,0 +1,171 @@
+"""Judges one replay with a falsified machine or map against the truth, and sums up many of them.
+
+Whether a frame is wrong comes from truth.csv; when the fault has to be noticed from the motion of the true joints, a
+plc.csv that nobody falsified. Metres, seconds, degrees.
+"""
+import dataclasses
+import math
+
+import numpy as np
+
+import attack_faults as faults
+import campaign_judge as judge
+
+UNSEEABLE_TURN_DEG = 0.15  # a turn below that may stay unseen for good; translations: judge.FALSE_ERROR_M
+NOTICE_S = 3.0             # from the motion that shows a fault to health 0
+MAX_SPEED = 0.3            # m/s, hull.max_speed
+SPEEDING_S = 0.5           # that long has the hull to seem faster than that
+CONTRADICTED = (2, 10)     # fault bits: PLC value contradicted, pose implausible
+WORDS = {"travel": ("travel", "gantry"), "slew": ("slew",), "luff": ("luff",)}
+
+
+def at_frames(values, t_ns, frames_t_ns):
+    return np.interp(frames_t_ns - t_ns[0], t_ns - t_ns[0], values)
+
+
+def shown_by_motion(plc, joints, begin):
+    """ns at which one of the joints has moved far enough since `begin`; None = not in this run."""
+    moments = []
+    for joint in joints:
+        after = plc["t_ns"] >= begin
+        v = plc[faults.JOINTS[joint]][after]
+        travelled = np.maximum.accumulate(v) - np.minimum.accumulate(v) if len(v) else v
+        far = np.flatnonzero(travelled >= faults.SHOWING_MOTION[joint])
+        if len(far):
+            moments.append(plc["t_ns"][after][far[0]])
+    return min(moments, default=None)
+
+
+def lever(plc, joint, machine, point):
+    """Distance of `point` (x, y, z in W) from the joint's axis, a row each, m; `machine`: as in the configuration."""
+    slew, luff = (np.array(machine[name]["xyz"]) for name in ("slew", "luff"))
+    from_slew = np.array(point) - slew - np.outer(plc["d_x"], [1, 0, 0])
+    if joint == "slew":
+        return np.hypot(from_slew[:, 0], from_slew[:, 1])
+    c, s = np.cos(np.radians(plc["theta_r"])), np.sin(np.radians(plc["theta_r"]))
+    ahead = from_slew[:, 0] * c + from_slew[:, 1] * s - luff[0]  # in the boom's vertical plane
+    return np.hypot(ahead, from_slew[:, 2] - luff[2])
+
+
+def apparent_speed(plc, joint, machine, point):
+    """How fast a hull that lies still seems to move at `point` when the joint's value stands still, m/s."""
+    seconds = (plc["t_ns"] - plc["t_ns"][0]) * 1e-9
+    v = plc[faults.JOINTS[joint]]
+    half = 0.25  # s; encoders have steps
+    rate = np.abs(np.interp(seconds + half, seconds, v) - np.interp(seconds - half, seconds, v)) / (2 * half)
+    return rate if joint == "travel" else np.radians(rate) * lever(plc, joint, machine, point)
+
+
+def shown_by_speed(plc, joints, begin, machine, point):
+    """ns at which the hull has seemed too fast for long enough; None = not in this run."""
+    moments = []
+    for joint in joints:
+        too_fast = (apparent_speed(plc, joint, machine, point) > MAX_SPEED) & (plc["t_ns"] >= begin)
+        since = np.where(too_fast, -1, np.arange(len(too_fast)))
+        last_slow = np.maximum.accumulate(since)
+        lasted = plc["t_ns"] - plc["t_ns"][np.maximum(last_slow, 0)] >= SPEEDING_S * faults.SECOND
+        far = np.flatnonzero(too_fast & lasted)
+        if len(far):
+            moments.append(plc["t_ns"][far[0]])
+    return min(moments, default=None)
+
+
+def shown(attack, plc, begin, with_map, machine, point):
+    """ns at which it shows; None = nothing need ever tell in this run."""
+    way = "shown" if with_map else attack.without
+    if way == "never":
+        return None
+    if not attack.joints:
+        return begin
+    return shown_by_motion(plc, attack.joints, begin) if way == "shown" else \
+        shown_by_speed(plc, attack.joints, begin, machine, point)
+
+
+@dataclasses.dataclass
+class Verdict:
+    """One replay of an attack, from the fault's beginning on."""
+    frames: int
+    healthy: int
+    wrong: int           # healthy, and off by more than 5 cm or 0.1 deg
+    grave: int           # of these more than 5 cm or 0.15 deg
+    late: int            # of these later than 3 s after the fault shows
+    worst_m: float       # of healthy frames
+    worst_deg: float
+    shows_s: float       # from the beginning to when it shows; inf = nothing need ever tell
+    fell_s: float        # from the beginning to health 0 after a 1; 0 = it was never 1; inf = it stayed 1
+    until_s: float       # from the beginning to the last grave frame; None = there is none
+    bit: bool            # was bit 2 or 10 set while health was 0?
+    named: bool          # was the joint named then? None without a joint, or without reasons in the table
+    refused: bool = False
+
+
+REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, worst_m=0.0, worst_deg=0.0, shows_s=math.inf,
+                  fell_s=0.0, until_s=None, bit=False, named=None, refused=True)
+
+
+def names_joint(frames, down, joints):
+    if "reason" not in frames or not joints:
+        return None
+    text = " ".join(frames["reason"][down]).lower()
+    return any(word in text for joint in joints for word in WORDS[joint])
+
+
+def fall(frames, after, seconds):
+    """When health went from 1 to 0 in the frames `after` the beginning."""
+    healthy = frames["health"] == 1
+    ones = np.flatnonzero(healthy & after)
+    if np.any(healthy[~after][-1:]):
+        ones = np.append(np.flatnonzero(after)[:1], ones)
+    if not len(ones):
+        return 0.0
+    zeros = np.flatnonzero(after & ~healthy)
+    zeros = zeros[zeros >= ones[0]]
+    return seconds(frames["t_ns"][zeros[0]]) if len(zeros) else math.inf
+
+
+def judge_attack(frames, truth, begin, shows, joints=()):
+    """`begin`, `shows`: ns. Tables of judge.read_table()."""
+    twists = judge.error_twists(frames, truth)
+    error = np.linalg.norm(twists[:, 3:], axis=1)
+    turn = np.degrees(np.linalg.norm(twists[:, :3], axis=1))
+    after = frames["t_ns"] >= begin
+    healthy = after & (frames["health"] == 1)
+    wrong = healthy & ~judge.within(error, turn)
+    grave = healthy & ~((error <= judge.FALSE_ERROR_M) & (turn <= UNSEEABLE_TURN_DEG))
+    late = grave & (frames["t_ns"] > (shows + NOTICE_S * faults.SECOND if shows is not None else math.inf))
+    down = after & (frames["health"] != 1)
+    bits = frames["faults"][down].astype(int) if "faults" in frames else np.zeros(np.count_nonzero(down), dtype=int)
+
+    def largest(values):
+        return float(np.max(np.nan_to_num(values[healthy], nan=math.inf))) if healthy.any() else 0.0
+
+    def since_begin(t_ns):
+        return float(t_ns - begin) * 1e-9
+
+    return Verdict(frames=int(after.sum()), healthy=int(healthy.sum()), wrong=int(wrong.sum()), grave=int(grave.sum()),
+                   late=int(late.sum()), worst_m=largest(error), worst_deg=largest(turn),
+                   shows_s=math.inf if shows is None else (shows - begin) * 1e-9,
+                   fell_s=fall(frames, after, since_begin),
+                   until_s=since_begin(frames["t_ns"][grave][-1]) if grave.any() else None,
+                   bit=bool(np.any(bits & sum(1 << b for b in CONTRADICTED))), named=names_joint(frames, down, joints))
+
+
+def told(verdicts, what):
+    """In how many of the runs, as text."""
+    known = [getattr(v, what) for v in verdicts if getattr(v, what) is not None and not v.refused]
+    return f"{sum(known)}/{len(known)}" if known else "-"
+
+
+def summary(verdicts):
+    """The figures of all runs of an attack by column of the table."""
+    def total(name):
+        return sum(getattr(v, name) for v in verdicts)
+
+    def most(name):
+        return max((getattr(v, name) for v in verdicts if getattr(v, name) is not None), default=None)
+
+    return {"runs": len(verdicts), "refused": total("refused"), "frames": total("frames"), "healthy": total("healthy"),
+            "wrong": total("wrong"), "grave": total("grave"), "late": total("late"), "worst_m": most("worst_m"),
+            "worst_deg": most("worst_deg"), "fell_s": most("fell_s"), "until_s": most("until_s"),
+            "bit": told(verdicts, "bit"),
+            "named": told(verdicts, "named")}
