@@ -84,6 +84,20 @@ JointHistory::Lookup JointHistory::covers(MeasurementTime first, MeasurementTime
   return Lookup::ok;
 }
 
+bool JointHistory::on_trial(MeasurementTime first, MeasurementTime last) const {
+  const auto earlier = [](const JointSample& s, MeasurementTime time) { return s.time < time; };
+  const auto later = [](MeasurementTime time, const JointSample& s) { return time < s.time; };
+  auto begin = std::upper_bound(samples_.begin(), samples_.end(), first, later);
+  if (begin != samples_.begin()) {
+    --begin;  // the sample at or before the first time
+  }
+  auto end = std::lower_bound(begin, samples_.end(), last, earlier);
+  if (end != samples_.end()) {
+    ++end;  // the sample at or after the last time
+  }
+  return std::any_of(begin, end, [](const JointSample& s) { return s.on_trial; });
+}
+
 std::optional<JointSample> JointHistory::newest() const {
   if (samples_.empty()) {
     return std::nullopt;

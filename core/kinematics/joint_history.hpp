@@ -47,6 +47,9 @@ class JointHistory {
   /// ok if every time in [first, last] has an answer; otherwise the first reason met.
   [[nodiscard]] Lookup covers(MeasurementTime first, MeasurementTime last) const;
 
+  /// Whether an answer in [first, last] hangs on a sample that is on trial.
+  [[nodiscard]] bool on_trial(MeasurementTime first, MeasurementTime last) const;
+
   [[nodiscard]] std::optional<JointSample> newest() const;
   [[nodiscard]] std::size_t size() const { return samples_.size(); }
   void clear() { samples_.clear(); }

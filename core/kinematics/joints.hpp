@@ -15,6 +15,7 @@ struct Joints {
 struct JointSample {
   MeasurementTime time;  // when the values were true: PLC latency already subtracted
   Joints joints;
+  bool on_trial = false;  // the joint gate does not believe it yet; see joint_gate.hpp
 };
 
 }  // namespace hulltrack

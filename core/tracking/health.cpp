@@ -260,6 +260,9 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
     findings.add(State::degraded, 0, e.integrity.reason);
   }
   check_uniqueness(memory, e.search, findings);
+  if (e.joints_on_trial) {  // good frames count: once the values are believed, these had the right ones too
+    findings.add(State::degraded, fault::plc_value, e.joint_trouble);
+  }
   if (a_lidar_is_silent) {  // what the others see may well follow the hull, but not steer by
     findings.add(State::degraded, fault::lidar_silent, "a LiDAR is silent");
   }
@@ -299,7 +302,9 @@ std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, 
     verdict = idle(memory, State::held, e.standing, "held by the PLC's command");
   } else if ((e.standing & fault::plc_stale) != 0 || !e.bracketed) {
     const auto faults = static_cast<Faults>(e.standing | fault::plc_stale);
-    verdict = idle(memory, State::fault, faults, "no joint samples bracket the scan");
+    verdict = idle(memory, State::fault, faults,
+                   "no joint samples bracket the scan" +
+                       (e.joint_trouble.empty() ? std::string{} : ": " + e.joint_trouble));
   } else {
     verdict = judge_pose(limits, memory, e);
   }

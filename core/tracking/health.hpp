@@ -5,8 +5,8 @@
 //   held       the PLC does not want tracking
 //   fault      no joints bracket the scan, or PLC data stale: nothing was registered
 //   tracking   every check passed, now and (unless tracking already) in recover_frames frames in a row
-//   degraded   a pose, but: Q1 above its limit for tracking, not converged, not constrained, implausible, or
-//              recovering
+//   degraded   a pose, but: Q1 above its limit for tracking, not converged, not constrained, implausible,
+//              joint values on trial, or recovering
 //   lost       no pose to trust: none found, too few matches, Q1 above its limit for lost, contradicted
 //              by the scan
 //   acquiring  instead of degraded and lost while the hull has to be searched for
@@ -41,10 +41,12 @@ struct SearchEvidence {
 struct Evidence {
   MeasurementTime time{};  // middle of the scan
   bool hold = false;
-  bool reacquire = false;   // rising edge
-  Faults standing = 0;      // plc_stale, plc_value, lidar_silent, clock
-  bool bracketed = false;   // joint samples bracket every packet
-  bool registered = false;  // a pose was found; what follows speaks of it
+  bool reacquire = false;        // rising edge
+  Faults standing = 0;           // plc_stale, plc_value, lidar_silent, clock
+  bool bracketed = false;        // joint samples bracket every packet
+  bool joints_on_trial = false;  // samples among them that nothing confirms yet
+  std::string joint_trouble;     // why joint values are refused or on trial
+  bool registered = false;       // a pose was found; what follows speaks of it
   bool converged = false;
   std::uint32_t matched = 0;
   std::string trouble;  // of the registration: why there is no pose, or why it did not converge

@@ -92,6 +92,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   evidence.hold = inputs.hold;
   evidence.reacquire = inputs.reacquire;
   evidence.standing = inputs.standing;
+  evidence.joint_trouble = inputs.joint_trouble;
   if (inputs.reacquire) {
     integrity.forget();
     machine_witness.forget();
@@ -101,6 +102,9 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   evidence.bracketed = mid.lookup == JointHistory::Lookup::ok &&
                        (scan.segments.empty() ||
                         joints.covers(scan.first_firing, scan.last_firing) == JointHistory::Lookup::ok);
+  evidence.joints_on_trial =
+      evidence.bracketed && joints.on_trial(scan.segments.empty() ? result.time : scan.first_firing,
+                                            scan.segments.empty() ? result.time : scan.last_firing);
   if (evidence.bracketed && !inputs.hold && (inputs.standing & fault::plc_stale) == 0) {
     scan_filter.run(scan, joints, drift(), filtered);
     const PlaneIcpResult found = register_scan(evidence, result);
@@ -108,7 +112,8 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     evidence.machine = machine_witness.look(result.time, filtered, views, stand(joints, result.time));
     const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
     search(evidence, result, confirmed);
-    if (result.registered && (evidence.integrity.faults & fault::contradicted) == 0) {
+    if (result.registered && !evidence.joints_on_trial &&
+        (evidence.integrity.faults & fault::contradicted) == 0) {
       finder.learn(result.time, found);
     }
   }

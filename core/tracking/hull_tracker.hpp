@@ -26,9 +26,10 @@ namespace hulltrack {
 
 /// What surrounds one scan besides its points.
 struct FrameInputs {
-  bool hold = false;       // the PLC's command word: no tracking wanted
-  bool reacquire = false;  // rising edge since the previous frame
-  Faults standing = 0;     // plc_stale, plc_value, lidar_silent, clock: what stands against the inputs
+  bool hold = false;            // the PLC's command word: no tracking wanted
+  bool reacquire = false;       // rising edge since the previous frame
+  Faults standing = 0;          // plc_stale, plc_value, lidar_silent, clock: what stands against the inputs
+  std::string joint_trouble{};  // why joint values are refused or on trial, for the reason; "" if none are
 };
 
 /// What one frame came to, healthy or not.
@@ -56,6 +57,10 @@ struct TrackResult {
   bool health = false;            // true if and only if state == tracking
   Faults faults = 0;
   std::string reason;  // why health is 0, in plain words with figures; empty when healthy
+
+  /// The scan itself shows that the joints are right on all six axes of the LiDAR's pose in W, by what stands
+  /// still on the quay. Nothing confirms them yet.
+  bool joints_confirmed = false;
 
   MotionProducts motion;
 };

@@ -95,6 +95,22 @@ TEST(JointHistory, ThereIsNoMotionWhereThereIsNoAnswer) {
   }
 }
 
+TEST(JointHistory, AnAnswerIsOnTrialIfASampleBesideItIs) {
+  JointHistory history;
+  history.add({ms(0), {}});
+  history.add({ms(20), {}});
+  history.add({ms(40), {}, true});
+  history.add({ms(60), {}});
+  history.add({ms(80), {}});
+  EXPECT_FALSE(history.on_trial(ms(0), ms(20)));
+  EXPECT_TRUE(history.on_trial(ms(5), ms(21)));
+  EXPECT_TRUE(history.on_trial(ms(25), ms(30)));
+  EXPECT_TRUE(history.on_trial(ms(41), ms(50)));
+  EXPECT_TRUE(history.on_trial(ms(0), ms(80)));
+  EXPECT_FALSE(history.on_trial(ms(60), ms(80)));
+  EXPECT_FALSE(history.on_trial(ms(61), ms(61)));
+}
+
 TEST(JointHistory, RefusesTimeThatDoesNotAdvance) {
   JointHistory history;
   EXPECT_TRUE(history.add({ms(100), {1.0, 0.0, 0.0}}));

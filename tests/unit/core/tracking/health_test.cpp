@@ -196,6 +196,31 @@ TEST(Health, ReturnsAfterRecoverFramesGoodFramesInARow) {
   }
 }
 
+TEST(Health, NothingIsHealthyWithJointsOnTrialButGoodFramesCount) {
+  Machine machine = tracking_machine();
+  const auto on_trial = [](Evidence& e) {
+    e.standing = fault::plc_value;
+    e.joints_on_trial = true;
+    e.joint_trouble = "travel waits";
+  };
+  for (int i = 0; i < 20; ++i) {
+    const HealthVerdict verdict = machine.step(on_trial);
+    ASSERT_EQ(verdict.state, State::degraded);
+    EXPECT_EQ(verdict.faults, fault::plc_value);
+    EXPECT_EQ(verdict.reason, "travel waits");
+  }
+  EXPECT_EQ(machine.step().state, State::tracking) << "what is believed now was right then";
+}
+
+TEST(Health, AScanWithoutJointsTellsWhyTheyWereRefused) {
+  Machine machine = tracking_machine();
+  const HealthVerdict verdict = machine.step([](Evidence& e) {
+    e.bracketed = false;
+    e.joint_trouble = "luff 97.000 deg is outside";
+  });
+  EXPECT_EQ(verdict.reason, "no joint samples bracket the scan: luff 97.000 deg is outside");
+}
+
 TEST(Health, ABadFrameStartsRecoveryAgain) {
   for (const Case& c : cases()) {
     Machine machine = tracking_machine();

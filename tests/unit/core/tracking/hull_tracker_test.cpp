@@ -85,6 +85,24 @@ TEST(HullTracker, FindsAMooredHullAndSaysSo) {
   }
 }
 
+TEST(HullTracker, RegistersWithJointsOnTrialButIsNotHealthy) {
+  const AnalyticShip ship = AnalyticShip::bulk_carrier();
+  HullTracker tracker(tracker_config(), {}, {sensor()}, testing::bulk_carrier_map());
+  JointHistory joints;
+  for (int i = 0; i < 200; ++i) {  // every twentieth of a second
+    joints.add({measurement_time_from_ns(i * std::int64_t{50'000'000}), {}, true});
+  }
+  for (std::uint32_t frame = 0; frame < 30; ++frame) {
+    const Scan scan = testing::scan_ship(&ship, sensor(), {.frame = frame});
+    const TrackResult result =
+        tracker.process(scan, joints, {.standing = fault::plc_value, .joint_trouble = "travel waits"});
+    EXPECT_TRUE(result.registered);
+    ASSERT_FALSE(result.health);
+    EXPECT_FALSE(result.joints_confirmed);
+    EXPECT_NE(result.faults & fault::plc_value, 0);
+  }
+}
+
 TEST(HullTracker, ExpectsQ1OfThePointsThatItIsTakenOf) {
   const auto metrics_within = [](double metric_range) {
     TrackerConfig config = tracker_config();
