@@ -2,18 +2,54 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 
-#include "core/geometry/se3.hpp"
+#include "core/base/text.hpp"
 #include "core/kinematics/joint_history.hpp"
 
 namespace hulltrack {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Nanoseconds kGap = JointHistory::kMaxGap;
+/// (a): "the same place", which the contract's wear allows an encoder to drift.
+constexpr JointValues kSamePlace{0.02, radians(0.05), radians(0.05)};
+/// (b): a gap in which a machine may well have made another motion than the one assumed is longer.
+constexpr Nanoseconds kLongestBridge = std::chrono::seconds(1);
+/// (b): with 50 ms of jitter at full speed half a second tells the speed to 20 mm/s (1 sigma), 250 ms to 60.
+constexpr Nanoseconds kSpeedKnown = milliseconds(500);
+constexpr int kConfirmedFrames = 5;
+
+/// How far two stamps may be off against each other. A value is as old as its PLC cycle allows (50 ms are a
+/// slow one), or as the time since the poll that did not show it yet; a gateway takes 5 to 30 ms. What is
+/// later than that may be refused, and is bridged by its neighbours.
+Nanoseconds stamp_spread(const JointGateConfig& config) {
+  constexpr Nanoseconds kSlowCycle = milliseconds(50);
+  constexpr Nanoseconds kGateway = milliseconds(30);
+  return kGateway + (config.has_heartbeat ? std::min(config.poll_period, kSlowCycle) : kSlowCycle);
+}
+
+JointTrack empty_track(const JointGateConfig& config) {
+  return {{config.travel.max_rate, config.slew.max_rate, config.luff.max_rate}, stamp_spread(config)};
+}
+
+bool within(const JointValues& a, const JointValues& b, const JointValues& tolerance) {
+  bool all = true;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    all = all && std::abs(a[i] - b[i]) <= tolerance[i];
+  }
+  return all;
+}
+
+}  // namespace
 
 JointGate::JointGate(const JointGateConfig& config)
     : config_(config),
-      joints_{Joint{"travel", "m", 1.0, config.travel, {}, {}, {}, {}, 0.0},
-              Joint{"slew", "deg", degrees(1.0), config.slew, {}, {}, {}, {}, 0.0},
-              Joint{"luff", "deg", degrees(1.0), config.luff, {}, {}, {}, {}, 0.0}} {}
+      joints_{Joint{"travel", "m", 1.0, config.travel}, Joint{"slew", "deg", degrees(1.0), config.slew},
+              Joint{"luff", "deg", degrees(1.0), config.luff}},
+      believed_(empty_track(config)),
+      trial_{empty_track(config)} {}
 
 bool JointGate::is_news(const JointReading& reading) const {
   const bool later = !last_ || reading.sample.time > last_->sample.time;
@@ -23,75 +59,175 @@ bool JointGate::is_news(const JointReading& reading) const {
 
 JointGate::Outcome JointGate::offer(const JointReading& reading) {
   if (!is_news(reading)) {
-    return {Verdict::no_news, last_outcome_.faults, last_outcome_.reason};
+    return {Verdict::no_news, last_outcome_.faults, last_outcome_.reason, last_outcome_.needs_edge};
   }
-  const MeasurementTime time = reading.sample.time;
   last_ = reading;
-
-  const Joints& v = reading.sample.joints;
-  const std::array<double, 3> values{v.d_x, v.theta_r, v.theta_p};
-  std::string reason;
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    std::string refusal = judge(joints_[i], values[i], time);
-    if (reason.empty()) {
-      reason = std::move(refusal);
-    }
-  }
-  last_outcome_ = reason.empty() ? Outcome{Verdict::believed, 0, {}}
-                                 : Outcome{Verdict::refused, fault::plc_value, std::move(reason)};
+  last_outcome_ = judge(reading.sample);
   return last_outcome_;
 }
 
 void JointGate::reacquire() {
-  for (Joint& joint : joints_) {
-    joint.reference.reset();
-    joint.refused.reset();
-  }
+  believed_.clear();
+  end_trial();
   last_outcome_ = {};
 }
 
-std::string JointGate::judge(Joint& joint, double value, MeasurementTime time) const {
-  std::array<char, 200> text{};
-  const auto shown = [&joint](double v) { return v * joint.display; };
-  if (!std::isfinite(value) || value < joint.limits.min || value > joint.limits.max) {
-    std::snprintf(text.data(), text.size(), "%s %.3f %s is outside %.3f to %.3f %s", joint.name, shown(value),
-                  joint.unit, shown(joint.limits.min), shown(joint.limits.max), joint.unit);
-    return text.data();
+JointGate::Outcome JointGate::judge(const JointSample& sample) {
+  if (std::string reason = out_of_range(sample); !reason.empty()) {
+    return {Verdict::refused, fault::plc_value, std::move(reason), false};
   }
-  const double allowance = joint.reference ? reach(joint, time - joint.reference_time) : 0.0;
-  const bool believed = !joint.reference || (joint.refused ? comes_back(joint, value, time)
-                                                           : std::abs(value - *joint.reference) <= allowance);
-  if (believed) {
-    joint.reference = value;
-    joint.reference_time = time;
-    joint.refused.reset();
-    return {};
+  if (believed_.empty()) {
+    return believe(sample);
   }
-  if (!joint.refused) {
-    joint.frozen_allowance = allowance;
+  if (sample.time - believed_.newest_time() > kGap) {
+    return try_out(sample);
   }
-  joint.refused = value;
-  joint.refused_time = time;
-  std::snprintf(
-      text.data(), text.size(),
-      "%s %.3f %s is %.3f %s from the last believed value, more than its max_rate of %.3f %s/s allows",
-      joint.name, shown(value), joint.unit, shown(std::abs(value - *joint.reference)), joint.unit,
-      shown(joint.limits.max_rate), joint.unit);
-  return text.data();
+  // What is within reach when a value is refused for the first time stays so: it does not grow with the wait.
+  const auto misfit = believed_.misfit(sample, trial_.track.empty() ? sample.time : trial_.track.began());
+  return misfit ? refuse_motion(sample, *misfit) : believe(sample);
 }
 
-bool JointGate::comes_back(const Joint& joint, double value, MeasurementTime time) const {
-  const double from_reference = std::abs(value - *joint.reference);
-  if (from_reference <= joint.frozen_allowance) {
+JointGate::Outcome JointGate::believe(const JointSample& sample) {
+  believed_.add(sample);
+  end_trial();
+  return {Verdict::believed, 0, {}, false};
+}
+
+JointGate::Outcome JointGate::refuse_motion(const JointSample& sample, const JointTrack::Misfit& misfit) {
+  if (trial_.track.empty()) {
+    begin_trial(sample, true);
+  } else if (!trial_.track.misfit(sample, sample.time)) {
+    continue_trial(sample);
+  }
+  return {Verdict::refused, fault::plc_value, misfit_words(sample, misfit), false};
+}
+
+JointGate::Outcome JointGate::try_out(const JointSample& sample) {
+  if (!trial_.track.empty() && sample.time - trial_.track.newest_time() > kGap) {
+    end_trial();
+  }
+  if (trial_.track.empty()) {
+    begin_trial(sample, false);
+  } else if (const auto misfit = trial_.track.misfit(sample, sample.time)) {
+    return {Verdict::refused, fault::plc_value, misfit_words(sample, *misfit), last_outcome_.needs_edge};
+  } else {
+    continue_trial(sample);
+  }
+  if (trial_confirms()) {
+    believed_ = trial_.track;
+    end_trial();
+    return {Verdict::believed, 0, {}, false};
+  }
+  const bool needs_edge = !trial_.at_old_place && !trial_.fits_motion;
+  return {Verdict::on_trial, fault::plc_value, trial_words(sample, needs_edge), needs_edge};
+}
+
+void JointGate::begin_trial(const JointSample& sample, bool contradicts) {
+  trial_.contradicts = contradicts;
+  trial_.at_old_place = believed_.stands_still(kSamePlace);
+  trial_.fits_motion = !contradicts && sample.time - believed_.newest_time() < kLongestBridge;
+  continue_trial(sample);
+}
+
+void JointGate::continue_trial(const JointSample& sample) {
+  trial_.track.add(sample);
+  trial_.at_old_place =
+      trial_.at_old_place && within(values_of(sample.joints), believed_.newest(), kSamePlace);
+}
+
+bool JointGate::trial_confirms() {
+  if (trial_.at_old_place && trial_.track.span() >= kGap) {
     return true;
   }
-  const bool breaks_with_refused = std::abs(value - *joint.refused) > reach(joint, time - joint.refused_time);
-  const Nanoseconds elapsed = std::min(time - joint.reference_time, JointHistory::kMaxGap);
-  return breaks_with_refused && from_reference <= reach(joint, elapsed);
+  if (trial_.fits_motion && trial_.track.span() >= kSpeedKnown) {
+    trial_.fits_motion = is_one_motion();
+    return trial_.fits_motion;
+  }
+  return false;
 }
 
-double JointGate::reach(const Joint& joint, Nanoseconds elapsed) const {
-  return joint.limits.max_rate * to_seconds(elapsed + config_.poll_period);
+/// (b): with constant acceleration the way between two times is the mean of both speeds times what lies
+/// between.
+bool JointGate::is_one_motion() const {
+  const MeasurementTime suspect = believed_.newest_time() - kGap;
+  const auto before = believed_.line(suspect - kSpeedKnown, suspect);
+  const auto after = trial_.track.line(trial_.track.newest_time() - kSpeedKnown, trial_.track.newest_time());
+  if (!before || !after || before->span < kSpeedKnown / 2) {
+    return false;
+  }
+  const double elapsed = to_seconds(after->time - before->time);
+  JointValues expected = before->value;
+  JointValues rates{};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    expected[i] += (before->rate[i] + after->rate[i]) / 2.0 * elapsed;
+    rates[i] = after->rate[i] - before->rate[i];
+  }
+  JointValues most = kAcceleration;
+  for (double& change : most) {
+    change *= elapsed;
+  }
+  return within(after->value, expected, kHalfContract) && within(rates, {}, most);
+}
+
+void JointGate::end_trial() { trial_ = {empty_track(config_)}; }
+
+void JointGate::frame_done(MeasurementTime first, MeasurementTime last, bool confirmed) {
+  if (last_outcome_.faults == 0 || trial_.track.empty()) {
+    return;
+  }
+  const bool inside = first >= trial_.track.began() && last <= trial_.track.newest_time();
+  trial_.confirmed = confirmed && inside ? trial_.confirmed + 1 : 0;
+  if (trial_.confirmed >= kConfirmedFrames) {
+    believed_ = trial_.track;
+    end_trial();
+    last_outcome_ = {};
+  }
+}
+
+std::string JointGate::out_of_range(const JointSample& sample) const {
+  const JointValues value = values_of(sample.joints);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const Joint& joint = joints_[i];
+    if (!std::isfinite(value[i]) || value[i] < joint.limits.min || value[i] > joint.limits.max) {
+      return format_text("%s %.3f %s is outside %.3f to %.3f %s", joint.name, value[i] * joint.display,
+                         joint.unit, joint.limits.min * joint.display, joint.limits.max * joint.display,
+                         joint.unit);
+    }
+  }
+  return {};
+}
+
+std::string JointGate::misfit_words(const JointSample& sample, const JointTrack::Misfit& misfit) const {
+  const Joint& joint = joints_[misfit.joint];
+  const double value = values_of(sample.joints)[misfit.joint] * joint.display;
+  const double off = misfit.off * joint.display;
+  if (misfit.rate) {
+    return format_text(
+        "%s %.3f %s is %.3f %s from the value before, more than its max_rate of %.3f %s/s allows", joint.name,
+        value, joint.unit, off, joint.unit, joint.limits.max_rate * joint.display, joint.unit);
+  }
+  return format_text("%s %.3f %s is %.3f %s from where its motion leads, a machine can be off by %.3f %s",
+                     joint.name, value, joint.unit, off, joint.unit, misfit.allowed * joint.display,
+                     joint.unit);
+}
+
+/// Names the joint that is farthest from where it was, in contracts.
+std::string JointGate::trial_words(const JointSample& sample, bool needs_edge) const {
+  const JointValues value = values_of(sample.joints);
+  const JointValues& old = believed_.newest();
+  std::size_t worst = 0;
+  const auto share = [&](std::size_t i) { return std::abs(value[i] - old[i]) / kHalfContract[i]; };
+  for (std::size_t i = 1; i < value.size(); ++i) {
+    worst = share(i) > share(worst) ? i : worst;
+  }
+  const Joint& joint = joints_[worst];
+  const char* wait = !needs_edge           ? "joint values are on trial"
+                     : config_.has_command ? "joint values wait for a re-acquire edge (command bit 1)"
+                                           : "joint values wait for a restart of the service, since "
+                                             "plc.read.command is -1";
+  return format_text("%s: none was believed for %.1f s, %s was %.3f %s then and is %.3f %s now", wait,
+                     to_seconds(sample.time - believed_.newest_time()), joint.name,
+                     old[worst] * joint.display, joint.unit, value[worst] * joint.display, joint.unit);
 }
 
 }  // namespace hulltrack

@@ -1,15 +1,23 @@
 // Which of the joint values that the PLC presents are believed?
 //
-// A poll whose heartbeat has not changed brings no sample (where the PLC has a heartbeat). Each joint
-// is then judged alone; the sample is believed only if all three joints are:
-//   range  a value that is not finite or outside min..max is refused.
-//   rate   |v - v_ref| > max_rate * (t - t_ref + poll_period) is refused, v_ref being the joint's last
-//          believed value; one poll period is the uncertainty of two stamps.
-//   back   a joint refused by its rate stays refused until its value comes back: within the allowance
-//          frozen when it was refused, or, after a single spike on a moving joint, with a value that
-//          breaks with the refused one and that the reference reaches in t - t_ref <= 250 ms.
-//          Time alone never makes a value believed; a persistent step waits for reacquire().
-// SI units (m, rad, s). No failure but the verdict. Thread rule: one owner. Cost: constant.
+// A poll whose heartbeat has not changed brings no sample (where the PLC has a heartbeat). A sample is
+// believed as a whole or not at all:
+//   range   a value that is not finite or outside min..max is refused.
+//   motion  what the machine cannot have done since the last believed sample is refused (joint_track.hpp), a
+//           change faster than max_rate among it. The next one that fits is believed; samples up to 250 ms
+//           apart are interpolated, so that a single refused one costs nothing.
+//   gap     after 250 ms without a believed sample (JointHistory::kMaxGap) values in range are on trial:
+//   scans
+//           may be registered with them, but nothing is healthy. They are believed if
+//           (a) all joints stood still before, and for 250 ms are within 2 cm or .05 deg of where they stood;
+//           (b) the gap is below 1 s and the lines through the half seconds before and after it are those of
+//               one motion with constant acceleration, to half the contract. The quarter of a second before
+//               the gap is left out: what went wrong may have begun before it was noticed;
+//           (c) frames whose joints the quay confirms (frame_done) lie within the trial; or
+//           (d) a re-acquire edge says that a person has checked them.
+//           Samples that follow what was refused by its motion are no motion of the machine: (b) is out.
+// So what is within reach never grows with time. At the start, as after an edge, the first values in range
+// are believed. SI units. No failure but the verdict. Thread rule: one owner. Cost: that of two JointTracks.
 #pragma once
 
 #include <array>
@@ -17,6 +25,7 @@
 #include <string>
 
 #include "core/base/status.hpp"
+#include "core/kinematics/joint_track.hpp"
 #include "core/kinematics/joints.hpp"
 
 namespace hulltrack {
@@ -32,6 +41,7 @@ struct JointGateConfig {
   JointLimits travel, slew, luff;
   Nanoseconds poll_period = std::chrono::milliseconds(20);
   bool has_heartbeat = true;
+  bool has_command = true;  // the PLC can raise a re-acquire edge
 };
 
 /// One poll's answer.
@@ -42,12 +52,13 @@ struct JointReading {
 
 class JointGate {
  public:
-  enum class Verdict { believed, no_news, refused };
+  enum class Verdict { believed, on_trial, no_news, refused };
 
   struct Outcome {
     Verdict verdict = Verdict::no_news;
-    Faults faults = 0;   // plc_value while the newest values are refused
-    std::string reason;  // of a refusal, with joint and figures; empty otherwise
+    Faults faults = 0;        // plc_value while the newest values are not believed
+    std::string reason;       // why not, with joint and figures; empty otherwise
+    bool needs_edge = false;  // neither (a) nor (b) can come true any more
   };
 
   explicit JointGate(const JointGateConfig& config);
@@ -59,8 +70,13 @@ class JointGate {
   /// Judges the next reading; readings come in order of time (an earlier one is no news).
   [[nodiscard]] Outcome offer(const JointReading& reading);
 
-  /// Re-acquire edge: forgets every reference, so that the next values in range are believed.
+  /// Re-acquire edge: forgets everything, so that the next values in range are believed.
   void reacquire();
+
+  /// A frame measured in [first, last] is done; `confirmed`: the quay map confirms its joints on all six
+  /// axes. Five in a row within a trial end it: were one in a hundred confirmed by chance, that would happen
+  /// once in 10^10 frames, and a shift of waiting has 3 * 10^5.
+  void frame_done(MeasurementTime first, MeasurementTime last, bool confirmed);
 
  private:
   struct Joint {
@@ -68,19 +84,33 @@ class JointGate {
     const char* unit;
     double display;  // factor from SI to the unit shown
     JointLimits limits;
-    std::optional<double> reference;  // last believed value
-    MeasurementTime reference_time{};
-    std::optional<double> refused;  // last value refused by its rate; empty = the joint is believed
-    MeasurementTime refused_time{};
-    double frozen_allowance = 0.0;
+  };
+  struct Trial {
+    JointTrack track;
+    bool contradicts = false;   // follows values that were refused by their motion
+    bool at_old_place = false;  // every sample is where the joints stood before
+    bool fits_motion = false;   // (b) may still come true
+    int confirmed = 0;          // frames in a row
   };
 
-  [[nodiscard]] std::string judge(Joint& joint, double value, MeasurementTime time) const;
-  [[nodiscard]] bool comes_back(const Joint& joint, double value, MeasurementTime time) const;
-  [[nodiscard]] double reach(const Joint& joint, Nanoseconds elapsed) const;
+  [[nodiscard]] Outcome judge(const JointSample& sample);
+  [[nodiscard]] Outcome believe(const JointSample& sample);
+  [[nodiscard]] Outcome refuse_motion(const JointSample& sample, const JointTrack::Misfit& misfit);
+  [[nodiscard]] Outcome try_out(const JointSample& sample);
+  void begin_trial(const JointSample& sample, bool contradicts);
+  void continue_trial(const JointSample& sample);
+  [[nodiscard]] bool trial_confirms();
+  [[nodiscard]] bool is_one_motion() const;
+  void end_trial();
+
+  [[nodiscard]] std::string out_of_range(const JointSample& sample) const;
+  [[nodiscard]] std::string misfit_words(const JointSample& sample, const JointTrack::Misfit& misfit) const;
+  [[nodiscard]] std::string trial_words(const JointSample& sample, bool needs_edge) const;
 
   JointGateConfig config_;
   std::array<Joint, 3> joints_;
+  JointTrack believed_;
+  Trial trial_;
   std::optional<JointReading> last_;
   Outcome last_outcome_;
 };
