@@ -9,28 +9,44 @@
 namespace hulltrack {
 namespace {
 
-constexpr int kMargin = 1;  // cells around the occupied ones
-
 // Heights are summed by whole registers, and in bytes as long as these hold what so many cells are worth.
-constexpr std::size_t kLanes = 64;
+constexpr int kLanes = 64;
 constexpr std::size_t kCellsInBytes = 127;  // of 2 at most
 static_assert(kLanes >= OccupancyGrid::kHeights);
+
+// A block: columns of one layer, and above each what a look that begins in the layer sees of the next.
+constexpr int kSideBits = 2;
+constexpr int kSide = 1 << kSideBits;
+constexpr int kLayerBits = 8;
+constexpr int kLayer = 1 << kLayerBits;
+constexpr int kColumn = kLayer + kLanes;
+constexpr std::size_t kBlock = std::size_t{kSide} * kSide * kColumn;
+
+// Heights are counted from so far below the lowest cell that all looks at a hull begin in one layer.
+constexpr int kBelow = 2 * OccupancyGrid::kUp;
+
+/// Of a column's height 0 in its block.
+std::size_t column_of(int x, int y) {
+  return static_cast<std::size_t>((x & (kSide - 1)) * kSide + (y & (kSide - 1))) * kColumn;
+}
 
 }  // namespace
 
 OccupancyGrid::OccupancyGrid(std::span<const Point> occupied_H) {
   const Box box = bounding_box(occupied_H);
-  origin_H_ = box.min - Point::Constant(kCell * kMargin);
-  const auto cells = [&](int axis) {
-    return static_cast<int>(std::floor((box.max[axis] - box.min[axis]) / kCell)) + 1 + 2 * kMargin;
-  };
-  size_ = {cells(0), cells(1), cells(2)};
-  worth_.assign(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
-                        static_cast<std::size_t>(size_.z + 4 * kUp) +
-                    kLanes - kHeights,
-                0);
+  origin_H_ = box.min - Point::Constant(kCell);
+  // Which cell a point lies in is for cell_of() alone to say: it rounds.
+  low_ = cell_of(box.min);
+  high_ = cell_of(box.max);
+  low_ = {low_.x - 1, low_.y - 1, low_.z - 1};
+  high_ = {high_.x + 1, high_.y + 1, high_.z + 1};
+  constexpr Index kBeside[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
   for (const Point& p : occupied_H) {
-    mark(cell_of(p));
+    const Index cell = cell_of(p);
+    mark(cell, 2);
+    for (const Index& d : kBeside) {
+      mark({cell.x + d.x, cell.y + d.y, cell.z + d.z}, 1);
+    }
   }
 }
 
@@ -41,26 +57,25 @@ OccupancyGrid::Index OccupancyGrid::cell_of(const Point& p_H) const {
   return {cell(scaled.x()), cell(scaled.y()), cell(scaled.z())};
 }
 
-// Twice kUp empty cells below and above: a cell kUp outside may be shifted by kUp more.
-std::uint8_t& OccupancyGrid::at(const Index& i) {
-  const auto column =
-      static_cast<std::size_t>(i.x) * static_cast<std::size_t>(size_.y) + static_cast<std::size_t>(i.y);
-  return worth_[column * static_cast<std::size_t>(size_.z + 4 * kUp) +
-                static_cast<std::size_t>(i.z + 2 * kUp)];
+void OccupancyGrid::mark(const Index& cell, std::uint8_t worth) {
+  const int z = cell.z + kBelow;
+  const int layer = z >> kLayerBits;
+  const int height = z & (kLayer - 1);
+  mark_in_layer(cell, layer, height, worth);
+  if (height < kHeights - 1) {
+    mark_in_layer(cell, layer - 1, kLayer + height, worth);
+  }
 }
 
-void OccupancyGrid::mark(const Index& cell) {
-  at(cell) = 2;
-  constexpr Index kBeside[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-  for (const Index& d : kBeside) {
-    std::uint8_t& beside = at({cell.x + d.x, cell.y + d.y, cell.z + d.z});
-    beside = std::max<std::uint8_t>(beside, 1);
-  }
+void OccupancyGrid::mark_in_layer(const Index& cell, int layer, int height, std::uint8_t worth) {
+  const std::uint32_t block = blocks_.add(cell.x >> kSideBits, cell.y >> kSideBits, layer);
+  worth_.resize(blocks_.size() * kBlock, 0);
+  std::uint8_t& at = worth_[block * kBlock + column_of(cell.x, cell.y) + static_cast<std::size_t>(height)];
+  at = std::max(at, worth);
 }
 
 void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
                               std::span<std::uint16_t, kHeights> worth) const {
-  const int depth = size_.z + 4 * kUp;
   std::array<std::uint8_t, kLanes> bytes{};
   std::size_t cells_in_bytes = 0;
   const auto empty_bytes = [&] {
@@ -73,16 +88,19 @@ void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
   for (const Index& cell : cells) {
     const int cx = cell.x + x;
     const int cy = cell.y + y;
-    if (cx < 0 || cx >= size_.x || cy < 0 || cy >= size_.y || cell.z < -kUp || cell.z >= size_.z + kUp) {
+    if (cx < low_.x || cx > high_.x || cy < low_.y || cy > high_.y) {
       continue;
     }
-    const std::uint8_t* lowest = &worth_[(static_cast<std::size_t>(cx) * static_cast<std::size_t>(size_.y) +
-                                          static_cast<std::size_t>(cy)) *
-                                             static_cast<std::size_t>(depth) +
-                                         static_cast<std::size_t>(cell.z + kUp)];
-    // The lanes beyond kHeights may be of the next column: nobody asks for them.
+    const int lowest = cell.z - kUp + kBelow;
+    const std::uint32_t block = blocks_.find(cx >> kSideBits, cy >> kSideBits, lowest >> kLayerBits);
+    if (block == BlockIndex::kNone) {
+      continue;
+    }
+    const std::uint8_t* column =
+        &worth_[block * kBlock + column_of(cx, cy) + static_cast<std::size_t>(lowest & (kLayer - 1))];
+    // The lanes beyond kHeights may lack the next layer's: nobody asks for them.
     for (std::size_t k = 0; k < kLanes; ++k) {
-      bytes[k] = static_cast<std::uint8_t>(bytes[k] + lowest[k]);
+      bytes[k] = static_cast<std::uint8_t>(bytes[k] + column[k]);
     }
     if (++cells_in_bytes == kCellsInBytes) {
       empty_bytes();

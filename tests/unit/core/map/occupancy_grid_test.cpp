@@ -146,5 +146,58 @@ TEST(OccupancyGrid, PointsHoweverFarOutsideCountNothing) {
   }
 }
 
+TEST(OccupancyGrid, AMapOfAnyLengthAnywhereIsCountedToItsLastCell) {
+  // Lengths of whole cells in whole centimetres: the ratio rounds to either side of the whole number.
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> cells(1, 64);
+  std::uniform_int_distribution<int> centimetre(-900'000, 900'000);
+  for (int i = 0; i < 2000; ++i) {
+    const int axis = i % 3;
+    Point low(0.0F, 0.0F, 0.0F);
+    low[axis] = static_cast<float>(0.01 * centimetre(random));
+    Point high = low;
+    high[axis] = static_cast<float>(static_cast<double>(low[axis]) + 0.5 * cells(random));
+    const Cloud map{low, high};
+    const OccupancyGrid grid(map);
+    const Counted counted(grid, map);
+    for (const Point& end : map) {
+      const Index at = grid.cell_of(end);
+      for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+          Worth worth{};
+          grid.correlate(std::vector<Index>{at}, x, y, worth);
+          for (int k = -2; k <= 2; ++k) {
+            ASSERT_EQ(worth[static_cast<std::size_t>(OccupancyGrid::kUp + k)],
+                      counted.worth(at.x + x, at.y + y, at.z + k))
+                << low.transpose() << " to " << high.transpose() << " at " << x << ", " << y << ", " << k;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(OccupancyGrid, MastsAndHoldsOfAnyHeightAreCounted) {
+  std::mt19937 random(4);
+  const Cloud map = random_cloud(3000, {1.0F, 1.0F, 400.0F}, random);
+  const OccupancyGrid grid(map);
+  const Counted counted(grid, map);
+  for (const Point& p : random_cloud(500, {1.5F, 1.5F, 420.0F}, random)) {
+    const Index at = grid.cell_of(p);
+    Worth worth{};
+    grid.correlate(std::vector<Index>{at}, 0, 0, worth);
+    for (int k = -OccupancyGrid::kUp; k <= OccupancyGrid::kUp; ++k) {
+      ASSERT_EQ(worth[static_cast<std::size_t>(OccupancyGrid::kUp + k)], counted.worth(at.x, at.y, at.z + k))
+          << p.transpose() << " at " << k;
+    }
+  }
+}
+
+TEST(OccupancyGrid, MemoryGrowsWithThePointsNotWithHowFarTheyLieApart) {
+  std::mt19937 random(5);
+  const Cloud map = random_cloud(3000, {10'000.0F, 10'000.0F, 10'000.0F}, random);
+  EXPECT_LT(OccupancyGrid(map).memory(), map.size() * 30'000);
+}
+
 }  // namespace
 }  // namespace hulltrack
