@@ -19,21 +19,44 @@ constexpr std::array<std::pair<int, int>, 8> kDirections{
 // Above a rim by less than this is the rim itself: sheer along a hatch, rest bars, noise.
 constexpr float kOnRim = 0.15F;  // m
 
-// What is around is asked of every third cell along both axes: 64 of them at most.
+// What is around is asked of every third cell along both axes, the cell itself among them: 81 of them at
+// most.
 constexpr int kStride = 3;
 
 int cells(float metres) { return static_cast<int>(std::lround(metres / Relief::kCell)); }
 
 }  // namespace
 
+template <typename T>
+struct Relief::Window {
+  explicit Window(T value_of_nothing) : nothing(value_of_nothing) {}
+
+  [[nodiscard]] bool holds(Cell c) const {
+    return c.column >= first.column && c.column < first.column + columns && c.row >= first.row &&
+           c.row < first.row + rows;
+  }
+  [[nodiscard]] const T& of(Cell c) const {
+    return values[static_cast<std::size_t>((c.row - first.row) * columns + c.column - first.column)];
+  }
+  [[nodiscard]] T at(Cell c) const { return holds(c) ? of(c) : nothing; }
+
+  T nothing;
+  Cell first{};
+  int columns = 0;
+  int rows = 0;
+  std::vector<T> values;
+};
+
 Relief::Relief(std::span<const Point> cloud_H) {
   const Box box = bounding_box(cloud_H);
   corner_ = box.min;
-  columns_ = static_cast<int>((box.max.x() - box.min.x()) / kCell) + 1;
-  rows_ = static_cast<int>((box.max.y() - box.min.y()) / kCell) + 1;
-  top_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kNothing);
+  const Cell last = cell_of(box.max);
+  columns_ = last.column + 1;
+  rows_ = last.row + 1;
+  make_tiles(cloud_H);
+  top_.assign(corners_.size() * kTileCells, kNothing);
   for (const Point& p : cloud_H) {
-    float& top = top_[index(cell_of(p))];
+    float& top = top_[place_of(cell_of(p))];
     top = std::max(top, p.z());
   }
   find_horizons();
@@ -45,111 +68,235 @@ Relief::Relief(std::span<const Point> cloud_H) {
   find_tall_columns();
 }
 
+/// Far outside is outside: whole numbers stay small enough to be counted on from.
 Relief::Cell Relief::cell_of(const Point& p) const {
-  return {static_cast<int>(std::floor((p.x() - corner_.x()) / kCell)),
-          static_cast<int>(std::floor((p.y() - corner_.y()) / kCell))};
+  const auto cell = [](float v) { return static_cast<int>(std::floor(std::clamp(v, -1e6F, 1e6F))); };
+  return {cell((p.x() - corner_.x()) / kCell), cell((p.y() - corner_.y()) / kCell)};
 }
 
-/// The least, over all directions, of the highest structure within kReach.
-float Relief::lowest_horizon(Cell from) const {
-  float lowest = kNowhere;
-  for (const auto& [dc, dr] : kDirections) {
-    const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * kCell : kCell;
-    const int steps = static_cast<int>(kReach / stride);
-    float highest = kNothing;
-    for (int i = 1; i <= steps; ++i) {
-      const Cell c{from.column + i * dc, from.row + i * dr};
-      if (!inside(c)) {
+/// A tile is kept where a point lies in it or in a cell beside it (the middle of some points may lie beside
+/// their cells), and where tiles with points lie within kReach on all four sides: the floor of a hold that no
+/// survey saw. Of the latter there are five at most for each tile with points.
+void Relief::make_tiles(std::span<const Point> cloud_H) {
+  static_assert(kReach / kCell / kTile == 5.0F, "a horizon looks across whole tiles");
+  constexpr int kFar = 5;
+  BlockIndex with_points;
+  std::vector<Cell> tiles;
+  BlockIndex kept;
+  const auto keep = [&](int column, int row) {
+    if (kept.add(column, row, 0) == tiles.size()) {
+      tiles.push_back({column, row});
+    }
+  };
+  for (const Point& p : cloud_H) {
+    const Cell c = cell_of(p);
+    with_points.add(c.column >> kTileBits, c.row >> kTileBits, 0);
+    for (const int row : {c.row - 1, c.row + 1}) {
+      for (const int column : {c.column - 1, c.column + 1}) {
+        keep(column >> kTileBits, row >> kTileBits);
+      }
+    }
+  }
+  const auto any = [&](Cell tile, int dc, int dr) {
+    for (int i = 1; i <= kFar; ++i) {
+      if (with_points.find(tile.column + i * dc, tile.row + i * dr, 0) != BlockIndex::kNone) {
+        return true;
+      }
+    }
+    return false;
+  };
+  for (std::size_t i = 0, all = tiles.size(); i < all; ++i) {
+    Cell tile = tiles[i];
+    if (with_points.find(tile.column, tile.row, 0) == BlockIndex::kNone) {
+      continue;
+    }
+    for (int step = 1; step <= kFar; ++step) {
+      ++tile.column;
+      if (with_points.find(tile.column, tile.row, 0) != BlockIndex::kNone) {
         break;
       }
-      highest = std::max(highest, top_[index(c)]);
+      if (any(tile, 1, 0) && any(tile, 0, 1) && any(tile, 0, -1)) {
+        keep(tile.column, tile.row);
+      }
     }
-    lowest = std::min(lowest, highest);
   }
-  return lowest;
+  std::sort(tiles.begin(), tiles.end(),
+            [](Cell a, Cell b) { return std::pair(a.row, a.column) < std::pair(b.row, b.column); });
+  for (const Cell& tile : tiles) {
+    tiles_.add(tile.column, tile.row, 0);
+    corners_.push_back({tile.column * kTile, tile.row * kTile});
+  }
 }
 
-bool Relief::in_pit(const Point& p) const {
-  const Cell c = cell_of(p);
-  return inside(c) && horizon_[index(c)] >= p.z() + kDepth;
+/// All cells of tiles that lie inside, row by row: visit(cell, its place).
+template <typename Visit>
+void Relief::for_each_cell(Visit&& visit) const {
+  for (std::size_t begin = 0, end = 0; begin < corners_.size(); begin = end) {
+    while (end < corners_.size() && corners_[end].row == corners_[begin].row) {
+      ++end;
+    }
+    for (int row = 0; row < kTile; ++row) {
+      for (std::size_t tile = begin; tile < end; ++tile) {
+        for (int column = 0; column < kTile; ++column) {
+          const Cell c{corners_[tile].column + column, corners_[tile].row + row};
+          if (inside(c)) {
+            visit(c, tile * kTileCells + in_tile(c));
+          }
+        }
+      }
+    }
+  }
+}
+
+/// `values` of the tiles that are kept up to `reach` tiles away, and of nothing between them.
+template <typename T>
+void Relief::look_around(const std::vector<T>& values, std::size_t tile, int reach, Window<T>& window) const {
+  const Cell middle{corners_[tile].column >> kTileBits, corners_[tile].row >> kTileBits};
+  Cell low = middle;
+  Cell high = middle;
+  std::vector<std::pair<Cell, std::uint32_t>> near;
+  for (int row = middle.row - reach; row <= middle.row + reach; ++row) {
+    for (int column = middle.column - reach; column <= middle.column + reach; ++column) {
+      if (const std::uint32_t number = tiles_.find(column, row, 0); number != BlockIndex::kNone) {
+        near.push_back({{column, row}, number});
+        low = {std::min(low.column, column), std::min(low.row, row)};
+        high = {std::max(high.column, column), std::max(high.row, row)};
+      }
+    }
+  }
+  window.first = {low.column * kTile, low.row * kTile};
+  window.columns = (high.column - low.column + 1) * kTile;
+  window.rows = (high.row - low.row + 1) * kTile;
+  window.values.assign(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows),
+                       window.nothing);
+  for (const auto& [place, number] : near) {
+    for (int row = 0; row < kTile; ++row) {
+      const auto from = values.begin() + static_cast<std::ptrdiff_t>(number * kTileCells) + row * kTile;
+      std::copy_n(from, kTile,
+                  window.values.begin() + ((place.row - low.row) * kTile + row) * window.columns +
+                      (place.column - low.column) * kTile);
+    }
+  }
 }
 
 void Relief::find_horizons() {
-  horizon_.reserve(top_.size());
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      horizon_.push_back(lowest_horizon({column, row}));
+  horizon_.assign(top_.size(), kNothing);
+  Window<float> around(kNothing);
+  // The least, over all directions, of the highest structure within kReach.
+  const auto lowest = [&around](Cell from) {
+    float least = kNowhere;
+    for (const auto& [dc, dr] : kDirections) {
+      const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * kCell : kCell;
+      const int steps = static_cast<int>(kReach / stride);
+      float highest = kNothing;
+      for (int i = 1; i <= steps; ++i) {
+        const Cell c{from.column + i * dc, from.row + i * dr};
+        if (!around.holds(c)) {
+          break;
+        }
+        highest = std::max(highest, around.of(c));
+      }
+      if (highest == kNothing) {
+        return kNothing;
+      }
+      least = std::min(least, highest);
+    }
+    return least;
+  };
+  for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
+    look_around(top_, tile, 5, around);
+    for (int row = 0; row < kTile; ++row) {
+      for (int column = 0; column < kTile; ++column) {
+        const Cell c{corners_[tile].column + column, corners_[tile].row + row};
+        horizon_[tile * kTileCells + in_tile(c)] = lowest(c);
+      }
     }
   }
 }
+
+bool Relief::in_pit(const Point& p) const { return at(horizon_, cell_of(p), kNothing) >= p.z() + kDepth; }
 
 void Relief::find_pits() {
   rim_.assign(top_.size(), kNoRim);
   std::vector<Cell> grown;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const Cell c{column, row};
-      const float top = top_[index(c)];
-      if (const float horizon = horizon_[index(c)]; top != kNothing && horizon >= top + kDepth) {
-        rim_[index(c)] = horizon;
-        grown.push_back(c);
-      }
+  for_each_cell([&](Cell c, std::size_t place) {
+    if (top_[place] != kNothing && horizon_[place] >= top_[place] + kDepth) {
+      rim_[place] = horizon_[place];
+      grown.push_back(c);
     }
-  }
+  });
   // What no survey saw beside a pit is pit: the shadow under a coaming.
   while (!grown.empty()) {
     const Cell from = grown.back();
     grown.pop_back();
     for (const auto& [dc, dr] : kDirections) {
       const Cell c{from.column + dc, from.row + dr};
-      if (inside(c) && top_[index(c)] == kNothing && std::isnan(rim_[index(c)])) {
-        if (const float horizon = horizon_[index(c)]; horizon != kNothing) {
-          rim_[index(c)] = horizon;
-          grown.push_back(c);
-        }
+      const std::size_t place = place_of(c);
+      if (place != kNoPlace && top_[place] == kNothing && std::isnan(rim_[place]) &&
+          horizon_[place] != kNothing) {
+        rim_[place] = horizon_[place];
+        grown.push_back(c);
       }
     }
   }
 }
 
 void Relief::find_insides() {
-  const auto is_pit = [this](Cell c) { return inside(c) && !std::isnan(rim_[index(c)]); };
-  inside_pit_.reserve(rim_.size());
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      inside_pit_.push_back(is_pit({column, row}) &&
-                            std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
-                              return is_pit({column + d.first, row + d.second});
-                            }));
+  inside_pit_.assign(rim_.size(), 0);
+  tile_has_pit_.assign(corners_.size(), 0);
+  for_each_cell([&](Cell c, std::size_t place) {
+    if (!std::isnan(rim_[place]) && std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
+          return !std::isnan(at(rim_, {c.column + d.first, c.row + d.second}, kNoRim));
+        })) {
+      inside_pit_[place] = 1;
+      tile_has_pit_[place / kTileCells] = 1;
     }
+  });
+}
+
+/// Per cell: its rim if it is inside of a pit; NaN elsewhere.
+std::vector<float> Relief::rims_of_insides() const {
+  std::vector<float> rims(rim_.size(), kNoRim);
+  for (std::size_t place = 0; place < rims.size(); ++place) {
+    rims[place] = inside_pit_[place] != 0 ? rim_[place] : kNoRim;
   }
+  return rims;
 }
 
 /// A gap in a coaming, or a corner that the survey missed, lowers the rim of all that is in line with it, and
 /// nothing raises one: the upper quartile of what is around is the coaming's, which follows trim and sheer.
 void Relief::smooth_rims() {
-  const int reach = cells(kCoversReach);
-  std::vector<float> smooth = rim_;
+  // A whole number of steps to either side: the steps meet the cell that they are about wherever the map
+  // ends.
+  const int reach = cells(kCoversReach) / kStride * kStride;
+  const std::vector<float> rims = rims_of_insides();
+  Window<float> window(kNoRim);
   std::vector<float> around;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      if (!inside_pit_[index({column, row})]) {
+  for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
+    if (tile_has_pit_[tile] == 0) {
+      continue;
+    }
+    look_around(rims, tile, 1, window);
+    for (std::size_t i = 0; i < kTileCells; ++i) {
+      const std::size_t place = tile * kTileCells + i;
+      if (inside_pit_[place] == 0) {
         continue;
       }
+      const Cell c{corners_[tile].column + static_cast<int>(i) % kTile,
+                   corners_[tile].row + static_cast<int>(i) / kTile};
       around.clear();
-      for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); r += kStride) {
-        for (int c = std::max(0, column - reach); c <= std::min(columns_ - 1, column + reach); c += kStride) {
-          if (inside_pit_[index({c, r})]) {
-            around.push_back(rim_[index({c, r})]);
+      for (int dr = -reach; dr <= reach; dr += kStride) {
+        for (int dc = -reach; dc <= reach; dc += kStride) {
+          if (const float rim = window.at({c.column + dc, c.row + dr}); !std::isnan(rim)) {
+            around.push_back(rim);
           }
         }
       }
       const auto quartile = around.begin() + static_cast<std::ptrdiff_t>(3 * around.size() / 4);
       std::nth_element(around.begin(), quartile, around.end());
-      smooth[index({column, row})] = *quartile;
+      rim_[place] = *quartile;
     }
   }
-  rim_ = std::move(smooth);
 }
 
 /// Connected insides are one pit.
@@ -157,41 +304,56 @@ void Relief::number_pits() {
   pit_.assign(top_.size(), kNoPit);
   std::uint32_t pits = 0;
   std::vector<Cell> grown;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const auto join = [&](Cell c) {
-        if (inside(c) && inside_pit_[index(c)] && pit_[index(c)] == kNoPit) {
-          pit_[index(c)] = pits;
-          grown.push_back(c);
-        }
-      };
-      join({column, row});
-      const bool begun = !grown.empty();
-      while (!grown.empty()) {
-        const Cell from = grown.back();
-        grown.pop_back();
-        for (const auto& [dc, dr] : kDirections) {
-          join({from.column + dc, from.row + dr});
-        }
+  for_each_cell([&](Cell first, std::size_t) {
+    const auto join = [&](Cell c) {
+      const std::size_t place = place_of(c);
+      if (place != kNoPlace && inside_pit_[place] != 0 && pit_[place] == kNoPit) {
+        pit_[place] = pits;
+        grown.push_back(c);
       }
-      pits += begun ? 1 : 0;
+    };
+    join(first);
+    const bool begun = !grown.empty();
+    while (!grown.empty()) {
+      const Cell from = grown.back();
+      grown.pop_back();
+      for (const auto& [dc, dr] : kDirections) {
+        join({from.column + dc, from.row + dr});
+      }
     }
-  }
+    pits += begun ? 1 : 0;
+  });
 }
 
+/// The lowest rim of all insides within the reach of covers, first along rows, then along columns.
 void Relief::raise_covers_place() {
   covers_from_.assign(top_.size(), kNowhere);
   const int reach = cells(kCoversReach) + 1;  // from a cell inside of the rim; a gap without one is no hold
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const float rim = rim_[index({column, row})];
-      if (!inside_pit_[index({column, row})]) {
-        continue;
+  const std::vector<float> rims = rims_of_insides();
+  Window<float> window(kNoRim);
+  std::vector<float> along_rows;
+  for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
+    const Cell corner = corners_[tile];
+    if (!any_pit({corner.column - reach, corner.row - reach},
+                 {corner.column + kTile - 1 + reach, corner.row + kTile - 1 + reach})) {
+      continue;
+    }
+    look_around(rims, tile, 1, window);
+    along_rows.assign(static_cast<std::size_t>((kTile + 2 * reach) * kTile), kNowhere);
+    for (int row = 0; row < kTile + 2 * reach; ++row) {
+      for (int column = 0; column < kTile; ++column) {
+        float& least = along_rows[static_cast<std::size_t>(row * kTile + column)];
+        for (int dc = -reach; dc <= reach; ++dc) {
+          const float rim = window.at({corner.column + column + dc, corner.row + row - reach});
+          least = std::isnan(rim) ? least : std::min(least, rim + kOnRim);
+        }
       }
-      for (int r = std::max(0, row - reach); r <= std::min(rows_ - 1, row + reach); ++r) {
-        for (int c = std::max(0, column - reach); c <= std::min(columns_ - 1, column + reach); ++c) {
-          float& from = covers_from_[index({c, r})];
-          from = std::min(from, rim + kOnRim);
+    }
+    for (int row = 0; row < kTile; ++row) {
+      for (int column = 0; column < kTile; ++column) {
+        float& least = covers_from_[tile * kTileCells + static_cast<std::size_t>(row * kTile + column)];
+        for (int i = row; i <= row + 2 * reach; ++i) {
+          least = std::min(least, along_rows[static_cast<std::size_t>(i * kTile + column)]);
         }
       }
     }
@@ -200,48 +362,57 @@ void Relief::raise_covers_place() {
 
 /// With the cells around, since the sides of what stands there may lean by as much.
 void Relief::find_tall_columns() {
-  tall_.assign(top_.size(), false);
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const Cell c{column, row};
-      if (top_[index(c)] <= covers_from_[index(c)]) {
-        continue;
-      }
-      tall_[index(c)] = true;
-      for (const auto& [dc, dr] : kDirections) {
-        const Cell beside{column + dc, row + dr};
-        if (inside(beside) && covers_from_[index(beside)] != kNowhere) {
-          tall_[index(beside)] = true;
-        }
+  tall_.assign(top_.size(), 0);
+  for_each_cell([&](Cell c, std::size_t place) {
+    if (top_[place] <= covers_from_[place]) {
+      return;
+    }
+    tall_[place] = 1;
+    for (const auto& [dc, dr] : kDirections) {
+      const std::size_t beside = place_of({c.column + dc, c.row + dr});
+      if (beside != kNoPlace && covers_from_[beside] != kNowhere) {
+        tall_[beside] = 1;
       }
     }
-  }
+  });
 }
 
 bool Relief::under_covers_place(const Point& p) const {
-  const Cell c = cell_of(p);
-  return in_covers_place(p) || (inside(c) && tall_[index(c)]);
+  return in_covers_place(p) || at(tall_, cell_of(p), std::uint8_t{0}) != 0;
 }
 
-bool Relief::in_covers_place(const Point& p) const {
-  const Cell c = cell_of(p);
-  return inside(c) && p.z() > covers_from_[index(c)];
-}
+bool Relief::in_covers_place(const Point& p) const { return p.z() > at(covers_from_, cell_of(p), kNowhere); }
 
 std::uint32_t Relief::pit_near(const Point& p, float reach) const {
   const std::optional<Point> over = over_pit_near(p, reach);
-  return over ? pit_[index(cell_of(*over))] : kNoPit;
+  return over ? at(pit_, cell_of(*over), kNoPit) : kNoPit;
+}
+
+/// Whether a tile that has cells from `low` to `high` has one that is inside of a pit.
+bool Relief::any_pit(Cell low, Cell high) const {
+  for (int row = low.row >> kTileBits; row <= high.row >> kTileBits; ++row) {
+    for (int column = low.column >> kTileBits; column <= high.column >> kTileBits; ++column) {
+      const std::uint32_t tile = tiles_.find(column, row, 0);
+      if (tile != BlockIndex::kNone && tile_has_pit_[tile] != 0) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
-  const Cell at = cell_of(p);
+  const Cell here = cell_of(p);
   const int far = cells(reach);
   std::optional<Point> best;
+  if (!any_pit({here.column - far, here.row - far}, {here.column + far, here.row + far})) {
+    return best;
+  }
   float best2 = reach * reach;
   for (int dr = -far; dr <= far; ++dr) {
     for (int dc = -far; dc <= far; ++dc) {
-      const Cell c{at.column + dc, at.row + dr};
-      if (!inside(c) || !inside_pit_[index(c)]) {
+      const Cell c{here.column + dc, here.row + dr};
+      if (const std::size_t place = place_of(c); place == kNoPlace || inside_pit_[place] == 0) {
         continue;
       }
       const Point q(corner_.x() + (static_cast<float>(c.column) + 0.5F) * kCell,
@@ -254,6 +425,13 @@ std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
     }
   }
   return best;
+}
+
+std::size_t Relief::memory() const {
+  const std::size_t floats =
+      top_.capacity() + horizon_.capacity() + rim_.capacity() + covers_from_.capacity();
+  return floats * sizeof(float) + pit_.capacity() * sizeof(std::uint32_t) + inside_pit_.capacity() +
+         tall_.capacity() + tile_has_pit_.capacity() + corners_.capacity() * sizeof(Cell) + tiles_.memory();
 }
 
 }  // namespace hulltrack

@@ -170,9 +170,97 @@ TEST(Relief, PointOverThePitIsTheNearestCellInsideOfItsRim) {
   EXPECT_FALSE(relief.over_pit_near({19.0F, 9.0F, kRim}, 2.0F)) << "no hatch there";
 }
 
+/// An open box: four walls of 3 m about a floor, its corner at `corner`.
+Cloud open_box(const Point& corner, float side) {
+  Cloud cloud;
+  add_level(cloud, corner.x(), corner.x() + side, corner.y(), corner.y() + side, corner.z());
+  add_walls(cloud, corner.x(), corner.x() + side, corner.y(), corner.y() + side, corner.z(),
+            corner.z() + 3.0F);
+  return cloud;
+}
+
+TEST(Relief, ASmallPitHasItsOwnRimWhereverTheMapEnds) {
+  // Smaller than the window that rims are smoothed in, and as near to the map's edges as can be.
+  for (float side = 0.75F; side < 4.0F; side += 0.25F) {
+    for (const float before : {0.0F, 0.25F, 0.5F, 1.0F, 2.0F, 3.5F}) {
+      Cloud cloud = open_box({before, 0.5F * before, 0.0F}, side);
+      cloud.emplace_back(0.0F, 0.0F, 0.0F);
+      const Relief relief(cloud);
+      const float middle = before + 0.5F * side;
+      if (const auto over = relief.over_pit_near({middle, 0.5F * before + 0.5F * side, 3.0F}, side)) {
+        EXPECT_NEAR(relief.rim_around(*over), 3.0F, 0.15F) << side << " m, " << before << " m from the edge";
+      } else {
+        EXPECT_LT(side, 1.5F) << before << " m from the edge";
+      }
+    }
+  }
+}
+
+TEST(Relief, ThePitAtTheMapsEdgeHasNoOthersRim) {
+  Cloud cloud = open_box({0.0F, 0.0F, 0.0F}, 1.5F);
+  for (const Point& p :
+       open_box({8.0F, 8.0F, 20.0F}, 6.0F)) {  // far above, first in no order and last in none
+    cloud.push_back(p);
+  }
+  const Relief relief(cloud);
+  EXPECT_NEAR(relief.rim_around({0.75F, 0.75F, 0.0F}), 3.0F, 0.15F);
+  EXPECT_NEAR(relief.rim_around({11.0F, 11.0F, 20.0F}), 23.0F, 0.15F);
+}
+
+TEST(Relief, AHoldThatWasSeenFromOneSideAloneIsWhollyPit) {
+  // 13 x 13 m; of its floor a strip of a metre was seen: most of the hold holds no point at all.
+  Cloud cloud;
+  add_walls(cloud, 0.0F, 13.0F, 0.0F, 13.0F, 0.0F, kRim);
+  add_level(cloud, 0.25F, 12.75F, 0.25F, 1.25F, kFloor);
+  const Relief relief(cloud);
+  for (float x = 1.0F; x < 12.5F; x += 0.7F) {
+    for (float y = 1.0F; y < 12.5F; y += 0.7F) {
+      EXPECT_NEAR(relief.rim_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
+      EXPECT_TRUE(relief.in_covers_place({x, y, kRim + 0.2F})) << x << ", " << y;
+    }
+  }
+}
+
+TEST(Relief, ShipsFarApartAreSeenAsEachAlone) {
+  const Cloud one = ship();
+  const Point apart(4096.0F, -2048.0F, 0.0F);
+  Cloud both = one;
+  for (const Point& p : one) {
+    both.push_back(p + apart);
+  }
+  const Relief alone(one);
+  const Relief relief(both);
+  for (float x = -20.0F; x <= 20.0F; x += 0.31F) {
+    for (float y = -10.0F; y <= 10.0F; y += 0.31F) {
+      for (const float z : {kFloor, 0.0F, 2.0F}) {
+        const Point p(x, y, z);
+        for (const Point& q : {p, Point(p + apart)}) {
+          EXPECT_EQ(relief.in_pit(q), alone.in_pit(p)) << q.transpose();
+          EXPECT_EQ(relief.under_covers_place(q), alone.under_covers_place(p)) << q.transpose();
+          EXPECT_EQ(std::isnan(relief.rim_around(q)), std::isnan(alone.rim_around(p))) << q.transpose();
+        }
+      }
+    }
+  }
+}
+
+TEST(Relief, MemoryGrowsWithThePointsNotWithHowFarTheyLieApart) {
+  Cloud strewn;
+  Cloud diagonal;
+  for (int i = 0; i < 3000; ++i) {
+    const auto f = static_cast<float>(i);
+    strewn.emplace_back(std::fmod(f * 618.034F, 20'000.0F) - 10'000.0F, 6.0F * f - 9'000.0F, 0.0F);
+    diagonal.emplace_back(6.0F * f - 9'000.0F, 6.0F * f - 9'000.0F, 0.0F);
+  }
+  for (const Cloud& cloud : {strewn, diagonal}) {
+    EXPECT_LT(Relief(cloud).memory(), cloud.size() * 40'000);
+  }
+}
+
 TEST(Relief, OutsideOfTheMapIsNothing) {
   const Relief relief(ship());
-  for (const Point& p : {Point(30, 0, 0), Point(-30, 0, 0), Point(0, 30, 0), Point(0, -30, 0)}) {
+  for (const Point& p :
+       {Point(30, 0, 0), Point(-30, 0, 0), Point(0, 30, 0), Point(0, -30, 0), Point(1e30F, -1e30F, 0)}) {
     EXPECT_FALSE(relief.in_pit(p));
     EXPECT_FALSE(relief.in_covers_place(p));
     EXPECT_TRUE(std::isnan(relief.rim_around(p)));
