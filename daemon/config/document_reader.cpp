@@ -151,6 +151,9 @@ class Reader {
       } else if (!is_section(sections, child)) {
         report(line, child,
                unknown(node.is_table() || node.is_array_of_tables(), path, name.str(), sections));
+        if (is_key_of_plc(name.str())) {
+          out_.blamed.insert("plc");  // where the default stands in its place
+        }
       } else if (const toml::table* inner = node.as_table()) {
         read_table(*inner, child, joined(place, name.str()), sections);
       } else {
@@ -247,6 +250,14 @@ class Reader {
     return found == section.keys.end() ? nullptr : &*found;
   }
 
+  static bool is_key_of_plc(std::string_view name) {
+    Config config;
+    auto sections = config_sections(config);
+    return std::any_of(sections.begin(), sections.end(), [&](Section& section) {
+      return section.name.starts_with("plc") && find_key(section, name) != nullptr;
+    });
+  }
+
   /// A section itself or a table on the way to one.
   static bool is_section(const std::vector<Section>& sections, const std::string& path) {
     return std::any_of(sections.begin(), sections.end(), [&](const Section& section) {
@@ -292,6 +303,7 @@ class Reader {
   }
 
   void report(int line, const std::string& key, const std::string& message) {
+    out_.blamed.insert(key.substr(0, key.find('.')));
     out_.problems.push_back({file_, line, key + ": " + message});
   }
 

@@ -22,6 +22,7 @@ struct Document {
   std::vector<Problem> problems;     // `file` as given to read_document
   std::map<std::string, int> lines;  // of every key and table present: "plc.read.slew.offset", "lidar.0"
   std::set<std::string> bad_keys;
+  std::set<std::string> blamed;  // first names of keys that a problem touches: "plc", "lidar", "plcc"
 };
 
 [[nodiscard]] Document read_document(std::string_view text, const std::string& file,

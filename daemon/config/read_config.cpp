@@ -8,6 +8,7 @@
 
 #include "daemon/config/cross_rules.hpp"
 #include "daemon/config/document_reader.hpp"
+#include "daemon/config/key_table.hpp"
 
 namespace hulltrack {
 namespace {
@@ -52,10 +53,24 @@ void add_broken_rules(Document& document, std::span<const LidarModel> models, co
       return document.bad_keys.contains(key);
     });
     if (!known_bad) {
+      for (const std::string& key : rule.keys) {
+        document.blamed.insert(key.substr(0, key.find('.')));
+      }
       document.problems.push_back({file, line_to_blame(rule.keys, document.lines),
                                    without_index(rule.keys.front()) + ": " + rule.message});
     }
   }
+}
+
+/// Whether all that [plc] holds is meant as it stands. A name at the root that nobody knows may be a part of
+/// it, misspelt, so that a default stands in its place: registers would be written at an address of another.
+bool plc_is_good(Document& document) {
+  std::set<std::string> known{kLidarSection};
+  for (const Section& section : config_sections(document.config)) {
+    known.insert(section.name.substr(0, section.name.find('.')));
+  }
+  return !document.lines.empty() && !document.blamed.contains("plc") &&
+         std::ranges::includes(known, document.blamed);
 }
 
 /// The first line that is too long, or nothing.
@@ -115,21 +130,26 @@ ConfigReading parse_config(std::string_view text, const std::filesystem::path& f
     add_broken_rules(document, models, name);
   }
   sort_by_line(document.problems);
+  const bool plc_good = plc_is_good(document);
   resolve_paths(document.config, file);
   ConfigReading reading{.config = {},
                         .problems = std::move(document.problems),
                         .lines = std::move(document.lines),
                         .readable = std::move(document.config),
-                        .bad_keys = std::move(document.bad_keys)};
+                        .bad_keys = std::move(document.bad_keys),
+                        .plc = {}};
+  if (plc_good) {
+    reading.plc = reading.readable.plc;
+  }
   if (reading.problems.empty()) {
     reading.config = reading.readable;
   }
   return reading;
 }
 
-ConfigReading read_config(const std::filesystem::path& file, std::span<const LidarModel> models) {
+Result<std::string> read_config_text(const std::filesystem::path& file) {
   const auto failed = [&](const std::string& why) {
-    return without_config({file.string(), 0, "cannot be read: " + why + "; is this the right file?"});
+    return Error{"cannot be read: " + why + "; is this the right file?"};
   };
   std::error_code code;
   if (std::filesystem::is_directory(file, code)) {
@@ -146,7 +166,12 @@ ConfigReading read_config(const std::filesystem::path& file, std::span<const Lid
     return failed(std::strerror(errno));
   }
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  return parse_config(text, file, models);
+  return text;
+}
+
+ConfigReading read_config(const std::filesystem::path& file, std::span<const LidarModel> models) {
+  const Result<std::string> text = read_config_text(file);
+  return text ? parse_config(*text, file, models) : without_config({file.string(), 0, text.error().message});
 }
 
 }  // namespace hulltrack

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/result.hpp"
 #include "daemon/config/config.hpp"
 #include "daemon/config/problem.hpp"
 #include "lidar_drivers/lidar_model.hpp"
@@ -25,6 +26,9 @@ struct ConfigReading {
   std::map<std::string, int> lines;  // of every key and section that the file has: "hull.map", "lidar.0"
   Config readable;                   // what could be read, so that files it names can be checked all the same
   std::set<std::string> bad_keys;    // whose values are not legal: in `readable` they have their defaults
+  /// Whom to tell that nothing starts: [plc], if neither it nor anything that may have been meant for it has
+  /// a problem.
+  std::optional<PlcConfig> plc;
 
   /// A problem that shows only later, such as a map that cannot be read: said of `key` ("hull.map",
   /// "lidar.0.calibration"), at its line or else that of its section.
@@ -36,6 +40,10 @@ struct ConfigReading {
 /// its own.
 [[nodiscard]] ConfigReading read_config(const std::filesystem::path& file,
                                         std::span<const LidarModel> models);
+
+/// The text alone, unread by any parser; of a file of more than 1 MiB the beginning, which parse_config
+/// refuses. An error says why the file cannot be read, without its name.
+[[nodiscard]] Result<std::string> read_config_text(const std::filesystem::path& file);
 
 /// As read_config for text already in memory; `file` names it in messages, and relative paths in the
 /// text are relative to its folder.

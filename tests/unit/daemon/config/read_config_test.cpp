@@ -468,6 +468,30 @@ TEST(ReadConfig, LaterProblemsFindTheirLine) {
       << "the line of the section, since the key is not there";
 }
 
+TEST(ReadConfig, ThePlcIsKnownWhileOnlyOthersHaveProblems) {
+  EXPECT_TRUE(parse(kLeast).plc);
+  for (const char* bad : {"[health]\nmin_matched = \"many\"\n", "[tracking]\nvoxel_sise = 1\n",
+                          "[[lidar]]\nport = 1\n", "[machine]\nslewing = 1\n"}) {
+    const auto reading = parse(kLeast + std::string(bad));
+    EXPECT_FALSE(reading.problems.empty()) << bad;
+    ASSERT_TRUE(reading.plc) << bad;
+    EXPECT_EQ(reading.plc->host, "plc.example");
+  }
+}
+
+TEST(ReadConfig, NoPlcIsKnownThatMayNotBeTheOneThatIsMeant) {
+  for (const char* bad :
+       {"[plc]\nhost = 5\n", "[plc]\nhost = \"a\"\nprot = 1502\n", "[plc]\n",
+        "[plc]\nhost = \"a\"\n[plc.wrote]\nbase = 300\n", "[plc]\nhost = \"a\"\n[plcwrite]\nbase = 300\n",
+        "[plc]\nhost = \"a\"\n[hull]\nbase = 300\n", "[plc]\nhost = \"a\"\n[[lidar]]\nunit_id = 2\n",
+        "[plc]\nhost = \"a\"\n[plc.write]\nbase = 3\n", "[plc]\nhost = \"a\"\n[plc.write\n",
+        "unit_id = 3\n[plc]\nhost = \"a\"\n", ""}) {
+    const auto reading = parse(bad);
+    EXPECT_FALSE(reading.problems.empty()) << bad;
+    EXPECT_FALSE(reading.plc) << bad;
+  }
+}
+
 TEST(ReadConfig, AFileThatCannotBeReadIsNamed) {
   const test::TempFolder folder;
   const auto missing = folder.path() / "none.toml";
