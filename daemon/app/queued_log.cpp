@@ -19,6 +19,7 @@ struct QueuedLog::Shared {
   std::size_t capacity = 0;
   std::size_t dropped = 0;   // since the start
   std::size_t reported = 0;  // of these, told in the log
+  bool writing = false;
   bool closing = false;
   bool finished = false;
   SlowWriter writer;
@@ -56,6 +57,11 @@ void QueuedLog::write(LogLevel level, std::string_view line) {
   shared_->changed.notify_all();
 }
 
+void QueuedLog::flush() {
+  std::unique_lock lock(shared_->mutex);
+  shared_->changed.wait_for(lock, patience_, [this] { return shared_->lines.empty() && !shared_->writing; });
+}
+
 std::size_t QueuedLog::dropped() const {
   const std::lock_guard lock(shared_->mutex);
   return shared_->dropped;
@@ -72,6 +78,7 @@ void QueuedLog::drain(const std::shared_ptr<Shared>& shared) {
     shared->lines.pop_front();
     const std::size_t lost = shared->dropped - shared->reported;
     shared->reported = shared->dropped;
+    shared->writing = true;
     lock.unlock();
     shared->writer(line.level, line.text);
     if (lost > 0) {
@@ -80,6 +87,8 @@ void QueuedLog::drain(const std::shared_ptr<Shared>& shared) {
           std::to_string(lost) + " log lines were dropped because the system log did not take them");
     }
     lock.lock();
+    shared->writing = false;
+    shared->changed.notify_all();
   }
   shared->finished = true;
   shared->changed.notify_all();

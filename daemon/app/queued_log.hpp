@@ -29,6 +29,8 @@ class QueuedLog final : public LogSink {
 
   /// Cost: one short lock and one copy of the line.
   void write(LogLevel level, std::string_view line) override;
+  /// Waits until the lines queued so far are written, as long as the destructor would.
+  void flush();
   /// Lines dropped since the start.
   [[nodiscard]] std::size_t dropped() const;
 

@@ -5,6 +5,7 @@
 
 #include <string_view>
 
+#include "daemon/app/mailbox.hpp"
 #include "daemon/config/words.hpp"
 
 namespace hulltrack {
@@ -58,17 +59,23 @@ int syslog_priority(LogLevel level) {
   return LOG_ERR;
 }
 
+struct SyslogSink::Shared {
+  std::atomic<int> facility = LOG_DAEMON;
+  Mailbox<std::string> ident;
+};
+
 SyslogSink::SyslogSink(const LogConfig& config, bool copy_to_stderr)
-    : facility_(std::make_shared<std::atomic<int>>(syslog_facility(config.facility))),
+    : shared_(std::make_shared<Shared>()),
       level_(config.level),
-      to_syslog_([ident = config.ident, opened = false, facility = facility_](LogLevel level,
-                                                                              std::string_view line) mutable {
+      to_syslog_([opened = false, shared = shared_](LogLevel level, std::string_view line) mutable {
         if (!opened) {
-          open_syslog(ident);  // connects: can block, so not in the constructor
+          open_syslog(shared->ident.get());  // connects: can block, so not in the constructor
           opened = true;
         }
-        ::syslog(syslog_priority(level) | *facility, "%.*s", static_cast<int>(line.size()), line.data());
+        ::syslog(syslog_priority(level) | shared->facility, "%.*s", static_cast<int>(line.size()),
+                 line.data());
       }) {
+  apply(config);
   if (copy_to_stderr) {
     to_stderr_ = std::make_unique<QueuedLog>(write_stderr);
   }
@@ -86,7 +93,15 @@ void SyslogSink::write(LogLevel level, std::string_view line) {
 
 void SyslogSink::apply(const LogConfig& config) {
   level_ = config.level;
-  *facility_ = syslog_facility(config.facility);
+  shared_->facility = syslog_facility(config.facility);
+  shared_->ident.put(config.ident);
+}
+
+void SyslogSink::flush() {
+  to_syslog_.flush();
+  if (to_stderr_) {
+    to_stderr_->flush();
+  }
 }
 
 }  // namespace hulltrack

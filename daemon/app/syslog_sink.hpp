@@ -20,12 +20,15 @@ class SyslogSink final : public LogSink {
   ~SyslogSink() override = default;
 
   void write(LogLevel level, std::string_view line) override;
-  /// Takes over level and facility of a reloaded configuration; the ident stays until a restart.
+  /// Takes over level and facility of a configuration, and the ident unless a line has been written: syslog
+  /// keeps the first until a restart.
   void apply(const LogConfig& config);
+  /// Waits until what has been written is out, for half a second at most.
+  void flush();
 
  private:
-  // Shared with the queue's thread, which can outlive this object.
-  std::shared_ptr<std::atomic<int>> facility_;
+  struct Shared;  // with the queue's thread, which can outlive this object
+  std::shared_ptr<Shared> shared_;
   std::atomic<LogLevel> level_;
   QueuedLog to_syslog_;
   std::unique_ptr<QueuedLog> to_stderr_;

@@ -42,6 +42,33 @@ TEST(QueuedLog, WritesEveryLineInOrderBeforeItIsGone) {
   EXPECT_EQ(lines.back(), "99");
 }
 
+TEST(QueuedLog, AFlushReturnsWhenEveryLineIsWritten) {
+  std::mutex mutex;
+  std::vector<std::string> lines;
+  QueuedLog log(
+      [&](LogLevel, std::string_view line) {
+        const std::lock_guard lock(mutex);
+        lines.emplace_back(line);
+      },
+      1000, kForEver);
+  for (int i = 0; i < 100; ++i) {
+    log.write(LogLevel::info, std::to_string(i));
+  }
+  log.flush();
+  const std::lock_guard lock(mutex);
+  EXPECT_EQ(lines.size(), 100U);
+}
+
+TEST(QueuedLog, AFlushOfAStuckLogRunsOutOfPatience) {
+  auto stuck = std::make_shared<StuckLog>();
+  QueuedLog log([stuck](LogLevel, std::string_view line) { stuck->take(line); }, 3,
+                std::chrono::milliseconds(1));
+  log.write(LogLevel::info, "first");
+  log.flush();
+  EXPECT_TRUE(stuck->lines.empty());
+  stuck->released.count_down();
+}
+
 TEST(QueuedLog, NeverWaitsForAStuckLogAndReportsWhatItDropped) {
   auto stuck = std::make_shared<StuckLog>();
   {
