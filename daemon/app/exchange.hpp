@@ -5,6 +5,7 @@
 // Two doorbells wake track and plc. Every member is safe for the threads named beside it.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -52,8 +53,10 @@ struct Exchange {
   Mailbox<WriteBlock> registers;  // plc puts, main gets
   EventBits events;               // rx and track raise, plc collects
   FigureBoard figures;            // all add, main takes
-  Doorbell track_bell;            // a scan or a joint sample has come
-  Doorbell plc_bell;              // a frame is done
+  /// No session, and none is being started: set before the plc thread runs.
+  std::atomic<bool> out_of_service = false;
+  Doorbell track_bell;  // a scan or a joint sample has come
+  Doorbell plc_bell;    // a frame is done
 };
 
 }  // namespace hulltrack

@@ -22,6 +22,9 @@ SteadyTime next_on_grid(SteadyTime due, Nanoseconds period, SteadyTime now) {
 
 }  // namespace
 
+/// Besides, a turn may wait for three replies: poll, read-back, write.
+Nanoseconds plc_turn_limit(const PlcConfig& plc) { return kTurnLimit + 3 * plc.response_timeout; }
+
 PlcThread::PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, LogSink& log,
                      const RegisterMemory& before)
     : exchange_(exchange),
@@ -42,14 +45,14 @@ void PlcThread::run(std::stop_token stop) {
     SteadyTime next_write = next_poll;
     const Nanoseconds write_gap = config_.write_period - std::min(kWriteMargin, config_.write_period / 4);
     while (!stop.stop_requested()) {
-      if (const SteadyTime now = steady_now(); now >= next_poll) {
-        poll();
-        next_poll = next_on_grid(next_poll, config_.poll_period, now);
-      }
       take_frame();
       if (const SteadyTime now = steady_now(); unwritten_ || now >= next_write) {
         write(false);
         next_write = now + write_gap;
+      }
+      if (const SteadyTime now = steady_now(); now >= next_poll) {
+        poll();
+        next_poll = next_on_grid(next_poll, config_.poll_period, now);
       }
       const SteadyTime now = steady_now();
       pulse_.beat(now);
@@ -60,9 +63,7 @@ void PlcThread::run(std::stop_token stop) {
     write(true);
     throw;
   }
-  if (last_write_) {
-    write(true);
-  }
+  write(last_write_says_stopped_);  // else the gap until somebody goes on begins here, not up to a period ago
 }
 
 void PlcThread::poll() {
@@ -119,6 +120,7 @@ PublicationContext PlcThread::context(bool stopped, SteadyTime now) const {
   const LidarView lidars = exchange_.lidars.get();
   const bool known = lidars.updated == SteadyTime{} || now - lidars.updated < kLidarViewAge;
   return {.stopped = stopped,
+          .out_of_service = exchange_.out_of_service,
           .every_lidar_silent = lidars.every_silent || !known,
           .standing = static_cast<Faults>(lidars.standing | view_.standing),
           .command = command_.command()};

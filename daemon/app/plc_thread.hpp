@@ -1,5 +1,6 @@
 // The thread that talks to the PLC: joints in at every poll, registers out at every frame and heartbeat.
 //
+// Writes before anything else: what the registers still say may be of a service that died.
 // Polls on a fixed grid of poll_period, writes at once when a frame is done and never less often than
 // write_period. It computes the age of the pose and takes the health away by itself (publication.hpp), so
 // that a stuck tracker can never look healthy. An unreachable PLC costs nothing but its response timeout.
@@ -28,6 +29,9 @@ struct RegisterMemory {
   CommandLatch command;
 };
 
+/// A turn of the thread that takes longer is a hang.
+[[nodiscard]] Nanoseconds plc_turn_limit(const PlcConfig& plc);
+
 class PlcThread {
  public:
   /// Does not connect. References must outlive this object. `before`: of the session before, if any.
@@ -37,7 +41,7 @@ class PlcThread {
   void run(std::stop_token stop);
 
   /// A reload: somebody else goes on writing, so the last write does not say "stopped".
-  void leave_without_last_write() { last_write_ = false; }
+  void leave_without_farewell() { last_write_says_stopped_ = false; }
 
   // Once run() has returned:
   [[nodiscard]] RegisterMemory memory() const { return {client_.heartbeat(), publication_, command_}; }
@@ -67,7 +71,7 @@ class PlcThread {
   std::optional<FrameDone> unwritten_;  // the newest frame, until it stands in the registers
   std::string reason_;                  // the newest frame's
   SteadyTime last_written_{};
-  std::atomic<bool> last_write_ = true;
+  std::atomic<bool> last_write_says_stopped_ = true;
   PlcWrite farewell_;
 };
 

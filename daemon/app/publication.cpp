@@ -85,7 +85,7 @@ State Publication::state(const PublicationContext& context, SteadyTime now) cons
     return State::held;
   }
   if (!any_frame_) {
-    return State::starting;
+    return context.out_of_service ? State::fault : State::starting;
   }
   if (context.every_lidar_silent || (context.standing & (fault::plc_stale | fault::map_unusable)) != 0) {
     return State::fault;

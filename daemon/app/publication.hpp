@@ -16,7 +16,8 @@ namespace hulltrack {
 
 /// What holds at the moment of a write, besides the newest frame.
 struct PublicationContext {
-  bool stopped = false;  // the last write of a clean stop
+  bool stopped = false;         // the last write of a clean stop
+  bool out_of_service = false;  // there is no session, and none is being started
   bool every_lidar_silent = false;
   Faults standing = 0;        // conditions: plc_stale, plc_value, lidar_silent, clock, map_unusable
   std::uint16_t command = 0;  // last command word read

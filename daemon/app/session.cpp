@@ -3,16 +3,6 @@
 #include "daemon/app/live_time.hpp"
 
 namespace hulltrack {
-namespace {
-
-/// A turn of any loop takes some 100 ms at most; five times that is a hang.
-constexpr Nanoseconds kTurnLimit = std::chrono::milliseconds(500);
-
-/// Beside that, a turn of the plc thread may wait for three replies: poll, read-back, write.
-Nanoseconds plc_turn_limit(const PlcConfig& plc) { return kTurnLimit + 3 * plc.response_timeout; }
-
-}  // namespace
-
 Session::Session(const Prepared& prepared, LogSink& log, GuardedThread::OnFailure on_failure,
                  const RegisterMemory& before)
     : rx_(prepared.config, exchange_, watch_.add("rx", kTurnLimit, steady_now()), log),
@@ -35,7 +25,7 @@ RegisterMemory Session::end(Ending ending) {
   rx_runner_.stop();
   track_runner_.stop();
   if (ending == Ending::for_reload) {
-    plc_.leave_without_last_write();
+    plc_.leave_without_farewell();
   }
   plc_runner_.stop();
   return plc_.memory();

@@ -15,6 +15,9 @@
 
 namespace hulltrack {
 
+/// A turn of any loop takes some 100 ms at most; five times that is a hang.
+inline constexpr Nanoseconds kTurnLimit = std::chrono::milliseconds(500);
+
 class Pulse {
  public:
   Pulse(std::string name, Nanoseconds limit, SteadyTime now) : name_(std::move(name)), limit_(limit) {

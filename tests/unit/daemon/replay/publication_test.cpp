@@ -41,6 +41,15 @@ TEST(Publication, BeforeTheFirstFrameEverythingIsUnknown) {
   EXPECT_EQ(publication.block({}, kStart), WriteBlock{});
 }
 
+TEST(Publication, OutOfServiceIsAFaultUnlessHeldOrStopped) {
+  Publication publication(milliseconds(500));
+  const WriteBlock waiting = publication.block({.out_of_service = true}, kStart);
+  EXPECT_EQ(waiting.state, State::fault);
+  EXPECT_FALSE(waiting.health);
+  EXPECT_EQ(publication.block({.out_of_service = true, .command = kCommandHold}, kStart).state, State::held);
+  EXPECT_EQ(publication.block({.stopped = true, .out_of_service = true}, kStart).state, State::stopped);
+}
+
 TEST(Publication, HealthyFrameIsPublishedWithItsAge) {
   Publication publication(milliseconds(500));
   publication.frame(healthy_frame(kStart, 7, 0.1), kStart + milliseconds(60), milliseconds(11));
