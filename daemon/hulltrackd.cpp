@@ -2,15 +2,19 @@
 //
 // 0 stopped as asked, 1 it failed, 2 wrong command line, 78 an error in the configuration, a calibration or
 // the map. Start-up problems go to standard error, where the service manager collects them.
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string>
 
 #include "core/base/text.hpp"
-#include "daemon/app/prepare.hpp"
+#include "daemon/app/live_time.hpp"
+#include "daemon/app/preparer.hpp"
+#include "daemon/app/reader.hpp"
 #include "daemon/app/service.hpp"
 #include "daemon/app/signals.hpp"
 #include "daemon/app/syslog_sink.hpp"
@@ -20,10 +24,6 @@
 namespace hulltrack {
 namespace {
 
-constexpr int kExitFailed = 1;
-constexpr int kExitUsage = 2;
-constexpr int kExitConfig = 78;  // EX_CONFIG of sysexits.h; RestartPreventExitStatus= of the unit
-
 struct Options {
   std::string config = "/etc/hulltrackd/hulltrackd.toml";
   bool check_config = false;
@@ -31,29 +31,57 @@ struct Options {
   bool to_stderr = false;
 };
 
-int refuse(const std::vector<Problem>& problems) {
+void print(const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) {
     std::fprintf(stderr, "%s\n", to_string(problem).c_str());
   }
-  return kExitConfig;
 }
 
-int check(const Prepared& prepared, const std::string& file) {
+int print_values(const std::string& file) {
+  const ConfigReading reading = read_config(file, lidar_models());
+  if (!reading.config) {
+    print(reading.problems);
+    return kExitConfig;
+  }
+  std::fputs(print_config(*reading.config).c_str(), stdout);
+  return 0;
+}
+
+Preparation prepared_for_check(const std::string& file) {
+  Preparer preparer(file, {}, Preparer::Goal::check, steady_now());
+  while (!preparer.result()) {
+    pollfd entry{preparer.fd(), POLLIN, 0};
+    poll(&entry, 1, 100);
+    preparer.step(steady_now());
+  }
+  return *std::move(preparer.result());
+}
+
+int check(const std::string& file) {
+  const Preparation preparation = prepared_for_check(file);
+  if (!preparation.prepared) {
+    print(preparation.problems);
+    return preparation.may_pass ? kExitFailed : kExitConfig;
+  }
+  const Prepared& prepared = *preparation.prepared;
   std::printf("%s: good: %s, map %s with %s\n", file.c_str(),
               counted(prepared.config.lidars.size(), "LiDAR").c_str(), prepared.config.map_file.c_str(),
-              counted(prepared.map->cloud_H().size(), "point").c_str());
+              counted(prepared.map_points, "point").c_str());
   if (!prepared.map_remark.empty()) {
     std::printf("%s\n", prepared.map_remark.c_str());
   }
   return 0;
 }
 
-int serve(const Options& options, Prepared prepared) {
+int serve(const Options& options) {
   Signals signals;  // before the log's threads, which inherit the mask
   const bool log_to_stderr = options.to_stderr || isatty(STDERR_FILENO) == 1;
-  SyslogSink log(prepared.config.log, log_to_stderr);
+  SyslogSink log({}, log_to_stderr);  // until [log] is known
   try {
-    return Service(options.config, std::move(prepared), signals, log).run();
+    Service service({.config_file = options.config}, signals, log);
+    const int code = service.run();
+    print(service.problems());
+    return code;
   } catch (const std::exception& error) {
     log.write(LogLevel::error, error.what());
     if (!log_to_stderr) {
@@ -65,19 +93,14 @@ int serve(const Options& options, Prepared prepared) {
 
 int run(const Options& options) {
   if (options.print_config) {
-    const ConfigReading reading = read_config(options.config, lidar_models());
-    if (!reading.config) {
-      return refuse(reading.problems);
-    }
-    std::fputs(print_config(*reading.config).c_str(), stdout);
-    return 0;
+    return print_values(options.config);
   }
-  Preparation preparation = prepare(options.config);
-  if (!preparation.prepared) {
-    return refuse(preparation.problems);
+  const int code = options.check_config ? check(options.config) : serve(options);
+  if (Preparer::maps_in_the_making() > 0) {  // by a thread that must not see this process taken down
+    std::fflush(nullptr);
+    std::_Exit(code);
   }
-  return options.check_config ? check(*preparation.prepared, options.config)
-                              : serve(options, std::move(*preparation.prepared));
+  return code;
 }
 
 }  // namespace
@@ -85,6 +108,9 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace hulltrack;
+  if (argc > 1 && argv[1] == kReaderFlag) {  // started by the service: not for people, not in --help
+    return run_reader(argc - 1, argv + 1);
+  }
   Options options;
   CLI::App app{"Tracks a moored ship's hull with the LiDAR on a ship loader and tells the loader's PLC."};
   app.name("hulltrackd");

@@ -7,6 +7,8 @@
 namespace hulltrack {
 namespace {
 
+constexpr Nanoseconds kStartPeriod = std::chrono::seconds(1);
+
 /// CLOCK_MONOTONIC in microseconds, as Type=notify-reload wants it beside RELOADING=1.
 std::string monotonic_usec() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -14,6 +16,13 @@ std::string monotonic_usec() {
 }
 
 }  // namespace
+
+void Notifier::starting(SteadyTime now) {
+  if (!last_start_ || now - *last_start_ >= kStartPeriod) {
+    sd_notify(0, "EXTEND_TIMEOUT_USEC=10000000");
+    last_start_ = now;
+  }
+}
 
 void Notifier::ready() { sd_notify(0, "READY=1"); }
 

@@ -14,6 +14,9 @@ namespace hulltrack {
 
 class Notifier {
  public:
+  /// The start makes progress: TimeoutStartSec= of the unit is held off for as long as this is called once a
+  /// second or more often.
+  void starting(SteadyTime now);
   void ready();
   /// One line for `systemctl status`; sent only when it differs from the last.
   void status(const std::string& line);
@@ -28,6 +31,7 @@ class Notifier {
  private:
   std::optional<Nanoseconds> watchdog_timeout_ = watchdog_timeout();
   std::optional<SteadyTime> last_watchdog_;
+  std::optional<SteadyTime> last_start_;
   std::string last_status_;
 };
 

@@ -1,78 +1,149 @@
 #include "daemon/app/prepare.hpp"
 
-#include <exception>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <new>
 #include <string>
 #include <utility>
 
 #include "core/base/text.hpp"
 #include "core/io/map_file.hpp"
-#include "daemon/app/quay_file.hpp"
-#include "daemon/config/read_config.hpp"
+#include "core/map/hull_map.hpp"
+#include "daemon/app/memory_file.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {
 namespace {
 
-/// What is wrong with the calibration file of LiDAR `lidar`, or with there being none; empty if nothing is.
-std::string calibration_problem(const LidarConfig& lidar) {
-  const LidarModel* model = find_lidar_model(lidar.model);
-  if (model == nullptr) {
-    return {};  // told already, and nobody knows what it would need
+Result<std::string> read_calibration(const std::string& file) {
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(kMaxCalibration + 1, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (stream.bad() || (!stream && !stream.eof())) {
+    return Error{file + ": cannot be read: " + std::strerror(errno) + "; is this the right file?"};
   }
-  const auto decoder = make_lidar_decoder(*model, {}, lidar.calibration);
-  return decoder ? "" : decoder.error().message;
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  if (bytes.size() > kMaxCalibration) {
+    return Error{file + ": is larger than 16 MiB; is this the calibration?"};
+  }
+  return bytes;
 }
 
-/// Goes on where the configuration has problems, so that a person hears of all of them at once.
-Preparation prepare_or_throw(const std::filesystem::path& config_file) {
-  ConfigReading reading = read_config(config_file, lidar_models());
-  Preparation preparation{std::nullopt, std::move(reading.problems)};
-  const Config& config = reading.readable;
-  const auto complain = [&](const std::string& key, const std::string& message) {
-    preparation.problems.push_back(reading.problem_with(config_file, key, message));
-  };
-  for (std::size_t i = 0; i < config.lidars.size(); ++i) {
-    const std::string key = "lidar." + std::to_string(i) + ".calibration";
-    const std::string problem = calibration_problem(config.lidars[i]);
-    if (!problem.empty() && !reading.bad_keys.contains(key)) {
-      complain(key, problem);
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// The bytes of the calibration file of this LiDAR, from which its decoder can be made; an error says what is
+/// wrong with it, or with there being none.
+Result<std::string> judged_calibration(const LidarConfig& lidar) {
+  const LidarModel* model = find_lidar_model(lidar.model);
+  if (model == nullptr) {
+    return std::string();  // told already, and nobody knows what it would need
+  }
+  if (lidar.calibration.empty() || model->calibration == LidarModel::Calibration::none) {
+    const auto decoder = make_lidar_decoder(*model, {}, lidar.calibration);
+    return decoder ? Result<std::string>(std::string()) : decoder.error();
+  }
+  Result<std::string> bytes = read_calibration(lidar.calibration);
+  if (!bytes) {
+    return bytes;
+  }
+  const MemoryFile copy("calibration", *bytes);  // the decoder opens a path, and this one cannot change
+  const auto decoder = make_lidar_decoder(*model, {}, copy.path());
+  return decoder ? std::move(bytes)
+                 : Error{replaced(decoder.error().message, copy.path().string(), lidar.calibration)};
+}
+
+/// The map of the file, and what to know of it although it can be used.
+Result<MapFile> judged_map(const Config& config) {
+  Result<MapFile> map = read_map_file(config.map_file);
+  if (!map) {
+    return map;
+  }
+  const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
+  if (map->cloud.size() < least) {
+    return Error{config.map_file.string() + ": has " + counted(map->cloud.size(), "point") +
+                 ", fewer than health.min_matched = " + std::to_string(least) +
+                 "; no scan could ever match it: make a denser map"};
+  }
+  return map;
+}
+
+class FileReader {
+ public:
+  FileReader(const std::filesystem::path& config_file, const ConfigReading& reading, std::size_t memory_mb,
+             const OnPreparationStep& begins)
+      : config_file_(config_file), reading_(reading), memory_mb_(memory_mb), begins_(begins) {
+    files_.problems = reading.problems;
+  }
+
+  PreparedFiles read() && {
+    const Config& config = reading_.readable;
+    for (std::size_t i = 0; i < config.lidars.size(); ++i) {
+      const std::string key = "lidar." + std::to_string(i) + ".calibration";
+      begins_(PreparationStep::calibration, i);
+      within_memory(key, config.lidars[i].calibration, [&] { read_calibration_of(config.lidars[i], key); });
     }
+    if (!config.map_file.empty()) {
+      within_memory("hull.map", config.map_file.string(), [&] { read_map(config); });
+    }
+    if (!files_.problems.empty()) {
+      files_.map_H.clear();
+    }
+    sort_by_line(files_.problems);
+    return std::move(files_);
   }
-  Result<QuayFile> quay = read_quay_file(config.quay_file);
-  if (!quay) {
-    complain("quay.map", quay.error().message);
+
+ private:
+  void read_calibration_of(const LidarConfig& lidar, const std::string& key) {
+    Result<std::string> bytes = judged_calibration(lidar);
+    if (!bytes && !reading_.bad_keys.contains(key)) {
+      complain(key, bytes.error().message);
+    }
+    files_.calibrations.push_back(bytes ? std::move(bytes).value() : std::string());
   }
-  if (!config.map_file.empty()) {
-    Result<MapFile> map = read_map_file(config.map_file);
+
+  void read_map(const Config& config) {
+    begins_(PreparationStep::map, 0);
+    Result<MapFile> map = judged_map(config);
     if (!map) {
       complain("hull.map", map.error().message);
-    } else if (const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
-               map->cloud.size() < least) {
-      complain("hull.map", config.map_file.string() + ": has " + counted(map->cloud.size(), "point") +
-                               ", fewer than health.min_matched = " + std::to_string(least) +
-                               "; no scan could ever match it: make a denser map");
-    } else if (reading.config && preparation.problems.empty()) {
-      std::string remark = remark_on_dropped(config.map_file, *map);
-      if (!quay->remark.empty()) {
-        remark += (remark.empty() ? "" : "\n") + quay->remark;
-      }
-      preparation.prepared =
-          Prepared{*std::move(reading.config), std::make_shared<const HullMap>(std::move(map->cloud)),
-                   quay->map, std::move(remark)};
+      return;
+    }
+    files_.map_remark = remark_on_dropped(config.map_file, *map);
+    begins_(PreparationStep::map_making, 0);
+    const HullMap made(map->cloud);
+    files_.map_H = std::move(map->cloud);
+  }
+
+  void within_memory(const std::string& key, const std::string& file, const std::function<void()>& work) {
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      complain(key, file + ": needs more than the " + std::to_string(memory_mb_) +
+                        " MB of memory that the service may use for it; thin it out");
     }
   }
-  sort_by_line(preparation.problems);
-  return preparation;
-}
+
+  void complain(const std::string& key, const std::string& message) {
+    files_.problems.push_back(reading_.problem_with(config_file_, key, message));
+  }
+
+  const std::filesystem::path& config_file_;
+  const ConfigReading& reading_;
+  std::size_t memory_mb_;
+  const OnPreparationStep& begins_;
+  PreparedFiles files_;
+};
 
 }  // namespace
 
-Preparation prepare(const std::filesystem::path& config_file) {
-  try {
-    return prepare_or_throw(config_file);
-  } catch (const std::exception& error) {  // out of memory, at worst
-    return {std::nullopt, {{config_file.string(), 0, std::string("cannot be made ready: ") + error.what()}}};
-  }
+PreparedFiles read_prepared_files(const std::filesystem::path& config_file, const ConfigReading& reading,
+                                  std::size_t memory_mb, const OnPreparationStep& begins) {
+  return FileReader(config_file, reading, memory_mb, begins).read();
 }
 
 }  // namespace hulltrack

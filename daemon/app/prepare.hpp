@@ -1,36 +1,37 @@
 // Everything that the service needs from files, read and checked before any of it is used.
 //
-// The same function serves the start, a reload (in a thread of its own, while the old configuration is
-// still in force) and --check-config. Cost: as long as the map takes to read. Never throws on what the
-// files hold; thread rule: pure but for the files that it reads.
+// The work of the reader (reader.hpp), a process of its own: what a damaged file does to it, it does not do
+// to the service. The map is made here as well, for proof that this ends within the reader's limits.
+// Cost: as long as the map takes to read and to make. Failure: problems; throws only when memory runs out
+// elsewhere than at a file. Thread rule: pure but for the files that it reads.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
+#include <functional>
 
-#include "core/map/hull_map.hpp"
-#include "core/map/quay_map.hpp"
-#include "daemon/config/config.hpp"
-#include "daemon/config/problem.hpp"
+#include "daemon/app/prepared_files.hpp"
+#include "daemon/config/read_config.hpp"
 
 namespace hulltrack {
 
-/// What a configuration file comes to, ready to run.
-struct Prepared {
-  Config config;
-  std::shared_ptr<const HullMap> map;
-  std::shared_ptr<const QuayMap> quay;  // nullptr = none is configured
-  std::string map_remark;  // what to know of a map that can be used all the same; empty = nothing
+/// What is under way while files are made ready.
+enum class PreparationStep : std::uint8_t {
+  configuration,       // being read
+  configuration_read,  // its bytes have been handed over
+  calibration,         // being read
+  map,                 // being read
+  map_making,          // what the tracker needs of it
+  done,
 };
 
-struct Preparation {
-  std::optional<Prepared> prepared;  // present if and only if problems is empty
-  std::vector<Problem> problems;     // of the configuration, the calibrations and the map
-};
+/// Told each step as it begins; `lidar` counts from 0 with PreparationStep::calibration.
+using OnPreparationStep = std::function<void(PreparationStep step, std::size_t lidar)>;
 
-[[nodiscard]] Preparation prepare(const std::filesystem::path& config_file);
+/// The calibrations and the map that a configuration names, read and judged. Goes on where the configuration
+/// has problems, so that a person hears of all of them at once. `memory_mb`: what is allowed, for messages.
+[[nodiscard]] PreparedFiles read_prepared_files(const std::filesystem::path& config_file,
+                                                const ConfigReading& reading, std::size_t memory_mb,
+                                                const OnPreparationStep& begins);
 
 }  // namespace hulltrack

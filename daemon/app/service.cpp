@@ -1,11 +1,15 @@
 #include "daemon/app/service.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
+#include <array>
+#include <cstdlib>
 #include <exception>
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "daemon/app/end_guard.hpp"
 #include "daemon/app/farewell.hpp"
 #include "daemon/app/live_time.hpp"
 #include "daemon/app/summary.hpp"
@@ -16,63 +20,147 @@ namespace {
 constexpr std::chrono::milliseconds kTurn{100};
 constexpr Nanoseconds kStatusPeriod = std::chrono::seconds(1);
 constexpr Nanoseconds kSummaryPeriod = std::chrono::minutes(1);
-
-void wait_for_signal(const Signals& signals) {
-  pollfd entry{signals.fd(), POLLIN, 0};
-  poll(&entry, 1, static_cast<int>(kTurn.count()));
-}
+/// Of the 5 s of TimeoutStopSec= the log may need one for its last lines, twice half a second; another is
+/// left for a busy computer.
+constexpr Nanoseconds kEndPatience = std::chrono::seconds(3);
 
 }  // namespace
 
-Service::Service(std::filesystem::path config_file, Prepared prepared, Signals& signals, SyslogSink& log)
-    : config_file_(std::move(config_file)), prepared_(std::move(prepared)), signals_(signals), log_(log) {}
+Service::Service(ServiceSetup setup, Signals& signals, SyslogSink& log)
+    : setup_(std::move(setup)), signals_(signals), log_(log) {}
 
 int Service::run() {
-  start_session(prepared_);
+  if (const std::optional<int> ended = start()) {
+    return *ended;
+  }
   second_began_ = minute_began_ = steady_now();
+  notifier_.ready();
+  while (!stopping_ && !failure_.get()) {
+    wait();
+    turn(steady_now());
+  }
+  const std::optional<std::string> failure = failure_.get();
+  return failure ? end("stopped by a fault of its own: " + *failure, kExitFailed)
+                 : end("stopped as asked", kExitStopped);
+}
+
+/// Nothing once a session runs, else the exit code.
+std::optional<int> Service::start() {
+  read_files(false);
+  while (!preparer_->result()) {
+    wait();
+    take_signals();
+    if (const std::optional<std::string> failure = failure_.get()) {
+      return end("stopped by a fault of its own: " + *failure, kExitFailed);
+    }
+    if (stopping_) {
+      return end("stopped as asked, before it was ready", kExitStopped);
+    }
+    if (std::exchange(reload_asked_, false)) {
+      read_files(false);
+    }
+    const SteadyTime now = steady_now();
+    preparer_->step(now);
+    meet_plc();
+    if (!stand_in_ || stand_in_->watch().overdue(now).empty()) {
+      notifier_.starting(now);
+    }
+  }
+  Preparation preparation = *std::move(preparer_->result());
+  preparer_.reset();
+  if (!preparation.prepared) {
+    return give_up(preparation);
+  }
+  start_first_session(*std::move(preparation.prepared));
+  return std::nullopt;
+}
+
+void Service::read_files(bool beside_session) {
+  ReaderSetup reader = setup_.reader;
+  reader.low_priority = beside_session;
+  preparer_.emplace(setup_.config_file, reader, Preparer::Goal::run, steady_now());
+}
+
+void Service::meet_plc() {
+  const std::optional<ConfigReading>& reading = preparer_->configuration();
+  if (!reading || stand_in_) {
+    return;
+  }
+  log_.apply(reading->readable.log);
+  plc_ = reading->plc;
+  if (plc_) {
+    stand_in_ =
+        std::make_unique<PlcStandIn>(*plc_, PlcStandIn::Meaning::starting, log_, on_failure(), registers_);
+  }
+}
+
+int Service::give_up(const Preparation& preparation) {
+  problems_ = preparation.problems;
+  return end("not started: " + counted(problems_.size(), "problem") + " with " + setup_.config_file.string() +
+                 " or the files that it names, told on standard error",
+             preparation.may_pass ? kExitFailed : kExitConfig);
+}
+
+void Service::start_first_session(Prepared prepared) {
+  plc_ = prepared.config.plc;
+  log_.apply(prepared.config.log);
+  if (stand_in_) {
+    registers_ = stand_in_->hand_over();
+    stand_in_.reset();
+  }
+  try {
+    start_session(prepared);
+  } catch (const std::exception&) {
+    log_.write(LogLevel::error, "not started; " + farewell_words(say_farewell()));
+    throw;
+  }
+  prepared_ = std::move(prepared);
   const Config& config = prepared_.config;
   log_.write(
       LogLevel::notice,
       format_text("started: %s, map %s with %s, PLC %s:%u", counted(config.lidars.size(), "LiDAR").c_str(),
-                  config.map_file.c_str(), counted(prepared_.map->cloud_H().size(), "point").c_str(),
+                  config.map_file.c_str(), counted(prepared_.map_points, "point").c_str(),
                   config.plc.host.c_str(), config.plc.port));
-  notifier_.ready();
-  while (!stopping_ && !failure_.get()) {
-    wait_for_signal(signals_);
-    turn(steady_now());
-  }
-  notifier_.stopping();
-  session_->end(Session::Ending::for_good);
-  const std::optional<std::string> failure = failure_.get();
-  const PlcWrite& farewell = session_->farewell();
-  log_.write(failure || !farewell.ok() ? LogLevel::error : LogLevel::notice,
-             (failure ? "stopped by a fault of its own: " + *failure : "stopped as asked") + "; " +
-                 farewell_words(farewell));
-  return failure ? 1 : 0;
 }
 
 void Service::start_session(const Prepared& prepared) {
   if (!prepared.map_remark.empty()) {
     log_.write(LogLevel::warning, prepared.map_remark);
   }
-  session_ = std::make_unique<Session>(
-      prepared, log_,
-      [this](const std::string& thread, const std::string& what) {
-        failure_.put("thread " + thread + " failed: " + what);
-      },
-      registers_);
+  session_ = std::make_unique<Session>(prepared, log_, on_failure(), registers_);
+}
+
+GuardedThread::OnFailure Service::on_failure() {
+  return [this](const std::string& thread, const std::string& what) {
+    failure_.put("thread " + thread + " failed: " + what);
+  };
+}
+
+/// For a signal, for what the reader has to say, or a turn.
+void Service::wait() const {
+  std::array<pollfd, 2> entries{{{signals_.fd(), POLLIN, 0}, {preparer_ ? preparer_->fd() : -1, POLLIN, 0}}};
+  poll(entries.data(), entries.size(), static_cast<int>(kTurn.count()));
+}
+
+void Service::take_signals() {
+  for (ServiceSignal signal = signals_.next(); signal != ServiceSignal::none; signal = signals_.next()) {
+    stopping_ = stopping_ || signal == ServiceSignal::stop;
+    reload_asked_ = reload_asked_ || signal == ServiceSignal::reload;
+  }
 }
 
 void Service::turn(SteadyTime now) {
-  for (ServiceSignal signal = signals_.next(); signal != ServiceSignal::none; signal = signals_.next()) {
-    if (signal == ServiceSignal::stop) {
-      stopping_ = true;
-      return;
-    }
-    begin_reload();
+  take_signals();
+  if (stopping_) {
+    return;
   }
-  if (reload_.valid() && reload_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-    finish_reload();
+  if (preparer_) {
+    preparer_->step(now);
+    if (preparer_->result()) {
+      finish_reload();
+    }
+  } else if (reload_asked_) {
+    begin_reload();
   }
   supervise(now);
   if (now - second_began_ >= kStatusPeriod) {
@@ -80,33 +168,71 @@ void Service::turn(SteadyTime now) {
   }
 }
 
-void Service::begin_reload() {
-  if (reload_.valid()) {
-    reload_again_ = true;  // the files may have changed after they were read
-    return;
+int Service::end(const std::string& why, int code) {
+  notifier_.stopping();
+  const EndGuard guard(kEndPatience, [&log = log_, code] {
+    log.write(LogLevel::error,
+              "the end took too long: the PLC does not answer or a thread is stuck. The registers may still "
+              "say health 1, and the PLC has to notice by the heartbeat that stands still");
+    log.flush();
+    std::_Exit(code);
+  });
+  preparer_.reset();
+  if (!plc_) {
+    log_.write(LogLevel::error, why + "; the PLC could not be told, because [plc] is not known");
+    return code;
   }
+  const PlcWrite farewell = say_farewell();
+  log_.write(code != kExitStopped || !farewell.ok() ? LogLevel::error : LogLevel::notice,
+             why + "; " + farewell_words(farewell));
+  return code;
+}
+
+/// By whoever talks to the PLC, else by nobody's leave: what stands in the registers, maybe health 1, must
+/// not stay.
+PlcWrite Service::say_farewell() {
+  if (session_) {
+    session_->end(Session::Ending::for_good);
+    return session_->farewell();
+  }
+  if (stand_in_) {
+    return stand_in_->say_farewell();
+  }
+  PlcClient client(*plc_, {}, registers_.heartbeat);
+  return write_farewell(client, registers_.publication.block({.stopped = true}, steady_now()));
+}
+
+void Service::begin_reload() {
+  reload_asked_ = false;
   notifier_.reloading();
   log_.write(LogLevel::notice,
-             "reload: reading " + config_file_.string() + "; the old configuration stays in force");
-  reload_ = std::async(std::launch::async, [file = config_file_] { return prepare(file); });
+             "reload: reading " + setup_.config_file.string() + "; the old configuration stays in force");
+  try {
+    read_files(true);
+  } catch (const std::exception& error) {
+    refuse_reload({{setup_.config_file.string(), 0, error.what()}});
+  }
 }
 
 void Service::finish_reload() {
-  Preparation preparation = reload_.get();
-  if (std::exchange(reload_again_, false)) {
+  Preparation preparation = *std::move(preparer_->result());
+  preparer_.reset();
+  if (reload_asked_) {  // the files may have changed after they were read
     begin_reload();
-    return;
-  }
-  if (preparation.prepared) {
-    swap_to(std::move(*preparation.prepared));
+  } else if (preparation.prepared) {
+    swap_to(*std::move(preparation.prepared));
+    notifier_.ready();
   } else {
-    for (const Problem& problem : preparation.problems) {
-      log_.write(LogLevel::error, to_string(problem));
-    }
-    log_.write(LogLevel::error,
-               "reload refused: the old configuration stays in force. Mend the lines above, then "
-               "reload again");
+    refuse_reload(preparation.problems);
   }
+}
+
+void Service::refuse_reload(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) {
+    log_.write(LogLevel::error, to_string(problem));
+  }
+  log_.write(LogLevel::error,
+             "reload refused: the old configuration stays in force. Mend the lines above, then reload again");
   notifier_.ready();
 }
 
@@ -116,6 +242,7 @@ void Service::swap_to(Prepared next) {
   try {
     start_session(next);
     prepared_ = std::move(next);
+    plc_ = prepared_.config.plc;
     log_.apply(prepared_.config.log);
     log_.write(LogLevel::notice, "reload: the new configuration is in force; the hull is searched for again");
   } catch (const std::exception& refusal) {
@@ -133,12 +260,6 @@ void Service::fall_back(const std::string& refusal) {
                                     farewell_words(say_farewell()));
     throw;
   }
-}
-
-/// Without a plc thread: what the last session left in the registers, maybe health 1, must not stand.
-PlcWrite Service::say_farewell() {
-  PlcClient client(prepared_.config.plc, {}, registers_.heartbeat);
-  return write_farewell(client, registers_.publication.block({.stopped = true}, steady_now()));
 }
 
 void Service::supervise(SteadyTime now) {

@@ -1,7 +1,9 @@
 // The service's life: start, signals, reload, supervision, and what the outside is told.
 //
-// Runs in the main thread, ten turns a second. SIGTERM and SIGINT end it with a last write of health 0,
-// state 7; SIGHUP reads the files again in a thread of its own and swaps only when all of them are good.
+// Runs in the main thread, ten turns a second, and never waits for a file: those are read by a process of
+// their own (preparer.hpp). At the start the PLC is told first: health 0 as soon as [plc] is known, and so on
+// until the first session takes over. SIGTERM and SIGINT end it at any time, with a last write of health 0,
+// state 7; SIGHUP reads the files again and swaps only when all of them are good.
 // The watchdog is fed only while every thread makes progress.
 // Failure: an exit code, after one line in the log. run() throws when there is nothing to run: the first
 // session cannot start, or after a reload neither the new configuration nor the old one can (the PLC is
@@ -9,15 +11,16 @@
 #pragma once
 
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/app/figures.hpp"
 #include "daemon/app/mailbox.hpp"
 #include "daemon/app/notifier.hpp"
-#include "daemon/app/prepare.hpp"
+#include "daemon/app/plc_stand_in.hpp"
+#include "daemon/app/preparer.hpp"
 #include "daemon/app/progress_log.hpp"
 #include "daemon/app/session.hpp"
 #include "daemon/app/signals.hpp"
@@ -25,36 +28,68 @@
 
 namespace hulltrack {
 
+inline constexpr int kExitStopped = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitConfig = 78;  // EX_CONFIG of sysexits.h; RestartPreventExitStatus= of the unit
+
+struct ServiceSetup {
+  std::filesystem::path config_file;  // read again on SIGHUP
+  ReaderSetup reader = {};
+};
+
 class Service {
  public:
-  /// References must outlive this object. `config_file` is read again on SIGHUP.
-  Service(std::filesystem::path config_file, Prepared prepared, Signals& signals, SyslogSink& log);
+  /// References must outlive this object.
+  Service(ServiceSetup setup, Signals& signals, SyslogSink& log);
 
   /// Returns when the service has ended: the exit code.
   int run();
 
+  /// After an end before the first session: what is wrong with the files.
+  [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
+
  private:
+  std::optional<int> start();
+  void read_files(bool beside_session);
+  void meet_plc();
+  int give_up(const Preparation& preparation);
+  void start_first_session(Prepared prepared);
   void start_session(const Prepared& prepared);
+
+  void wait() const;
+  void take_signals();
   void turn(SteadyTime now);
+  int end(const std::string& why, int code);
+  PlcWrite say_farewell();
+
   void begin_reload();
   void finish_reload();
+  void refuse_reload(const std::vector<Problem>& problems);
   void swap_to(Prepared next);
   void fall_back(const std::string& refusal);
-  PlcWrite say_farewell();
+
   void supervise(SteadyTime now);
   void report(SteadyTime now);
+  [[nodiscard]] GuardedThread::OnFailure on_failure();
 
-  std::filesystem::path config_file_;
-  Prepared prepared_;
+  ServiceSetup setup_;
   Signals& signals_;
   SyslogSink& log_;
   Notifier notifier_;
   ProgressLog progress_log_{log_, Notifier::watchdog_timeout()};
   Mailbox<std::optional<std::string>> failure_;  // a thread's, once it has ended
+  std::optional<Preparer> preparer_;             // while files are read, at the start or for a reload
+  std::vector<Problem> problems_;
+
+  // Who talks to the PLC: the session, before the first one the stand-in, between two of them nobody.
+  std::optional<PlcConfig> plc_;  // once it is known to be the one that is meant
+  std::unique_ptr<PlcStandIn> stand_in_;
   std::unique_ptr<Session> session_;
-  RegisterMemory registers_;  // of the session before
-  std::future<Preparation> reload_;
-  bool reload_again_ = false;
+  RegisterMemory registers_;  // of whoever talked before
+  Prepared prepared_;         // the session's
+
+  bool reload_asked_ = false;  // by a signal, and not begun yet
   bool stopping_ = false;
   Figures minute_;
   SteadyTime second_began_{};

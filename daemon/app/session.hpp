@@ -9,7 +9,7 @@
 #include "daemon/app/exchange.hpp"
 #include "daemon/app/guarded_thread.hpp"
 #include "daemon/app/plc_thread.hpp"
-#include "daemon/app/prepare.hpp"
+#include "daemon/app/preparer.hpp"
 #include "daemon/app/rx_thread.hpp"
 #include "daemon/app/thread_watch.hpp"
 #include "daemon/app/track_thread.hpp"

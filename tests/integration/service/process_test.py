@@ -1,6 +1,7 @@
 """hulltrackd as a process: start, stop, reload, exit codes, what the service manager and the PLC see."""
 import os
 import pathlib
+import select
 import signal
 import socket
 import struct
@@ -83,9 +84,10 @@ class ServiceTest(unittest.TestCase):
         plc.wait_for(healthy, "with health 1")
         return plc, service
 
-    def run_to_end(self, *arguments):
+    def run_to_end(self, *arguments, runtime_folder=None):
+        env = dict(os.environ, RUNTIME_DIRECTORY=str(runtime_folder)) if runtime_folder else None
         return subprocess.run([PROGRAM, "--config", self.config, *arguments], capture_output=True, text=True,
-                              check=False, timeout=60)
+                              check=False, env=env)
 
     def test_tracks_and_stops_with_health_0_and_state_7(self):
         for number in (signal.SIGTERM, signal.SIGINT):
@@ -191,6 +193,120 @@ class ServiceTest(unittest.TestCase):
         for key in (b"WIDTH", b"POINTS"):
             header = header.replace(key + b" %d" % count, key + b" %d" % (count * times))
         (self.folder / name).write_bytes(header + b"DATA binary\n" + body * times)
+
+    # -- files that are read by a process of their own
+
+    def write_stuck_config(self, plc_port, more=""):
+        """With a calibration that is a pipe: whoever reads it waits until somebody writes into it."""
+        os.mkfifo(self.folder / "pipe")
+        self.addCleanup(self.release_pipe)
+        self.write_config(plc_port, more)
+        text = self.config.read_text(encoding="utf-8")
+        self.config.write_text(text.replace('"velodyne_vlp16"', '"hesai_xt32"\ncalibration = "pipe"'), encoding="utf-8")
+
+    def release_pipe(self):
+        try:
+            os.close(os.open(self.folder / "pipe", os.O_WRONLY | os.O_NONBLOCK))
+        except OSError:
+            pass  # nobody reads
+
+    def reader_at_the_pipe(self, service):
+        """The process id of the reader, once it has opened the pipe."""
+        pipe = os.open(self.folder / "pipe", os.O_WRONLY)  # waits for the reader
+        self.addCleanup(os.close, pipe)
+        children = pathlib.Path(f"/proc/{service.child.pid}/task/{service.child.pid}/children")
+        return int(children.read_text(encoding="ascii").split()[0])
+
+    def stuck_at_the_start(self):
+        plc = self.start(Plc())
+        self.write_stuck_config(plc.port)
+        service = self.start(Service(PROGRAM, self.config, self.folder))
+        return plc, service, self.reader_at_the_pipe(service)
+
+    def stuck_in_a_reload(self):
+        plc, service = self.start_all()
+        self.write_stuck_config(plc.port)
+        service.signal(signal.SIGHUP)
+        return plc, service, self.reader_at_the_pipe(service)
+
+    def test_the_plc_is_told_health_0_before_any_other_file_is_read(self):
+        plc, service, _ = self.stuck_at_the_start()
+        plc.wait_for(lambda record: record["heartbeat"] >= 10, "with the tenth heartbeat")
+        self.assertEqual({(record["health"], record["state"]) for record in plc.writes()}, {(0, 0)})
+        self.assert_unbroken_heartbeat(plc)
+        self.assertFalse(any("READY" in notice for notice in list(service.notices.queue)))
+        self.assertTrue(any("EXTEND_TIMEOUT_USEC" in notice for notice in list(service.notices.queue)))
+
+    def test_the_first_session_goes_on_with_the_heartbeat_of_the_start(self):
+        plc, _ = self.start_all()
+        self.assert_unbroken_heartbeat(plc)
+        times = [record["mono_ns"] for record in plc.writes()]
+        gap = max(b - a for a, b in zip(times, times[1:]))
+        print(f"longest gap between writes, start included: {gap * 1e-6:.0f} ms", file=sys.stderr)
+
+    def test_stops_at_once_while_files_are_read_at_the_start_or_for_a_reload(self):
+        for begin in (self.stuck_at_the_start, self.stuck_in_a_reload):
+            with self.subTest(begin.__name__):
+                plc, service, reader = begin()
+                pidfd = os.pidfd_open(reader)
+                plc.wait_for(lambda record: True, "at all")
+                service.signal(signal.SIGTERM)
+                self.assertEqual(service.wait(), 0, service.err.all)
+                self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+                self.wait_for_end(pidfd)
+                service.close()
+                (self.folder / "notify").unlink()
+                (self.folder / "pipe").unlink()
+
+    def test_a_reader_that_dies_in_a_reload_costs_the_session_nothing(self):
+        plc, service, reader = self.stuck_in_a_reload()
+        os.kill(reader, signal.SIGSEGV)
+        service.err.find(lambda line: "pipe: reading it ended the reader with signal SEGV" in line, "about the reader")
+        service.err.find(lambda line: "reload refused" in line, "about the refusal")
+        plc.wait_for(healthy, "with health 1")
+        self.assertNotIn(0, [record["state"] for record in self.after_first_health(plc)])
+        self.assert_unbroken_heartbeat(plc)
+
+    def test_a_reader_that_dies_at_the_start_is_a_problem_of_its_file_and_told_to_the_plc(self):
+        plc, service, reader = self.stuck_at_the_start()
+        os.kill(reader, signal.SIGSEGV)
+        self.assertEqual(service.wait(), 78)
+        line = self.config.read_text(encoding="utf-8").splitlines().index('calibration = "pipe"') + 1
+        self.assertIn(f"{self.config}:{line}: lidar.calibration: {self.folder}/pipe: reading it ended the reader",
+                      "\n".join(service.err.all))
+        self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+
+    def test_the_reader_never_outlives_the_service(self):
+        _, service, reader = self.stuck_in_a_reload()
+        pidfd = os.pidfd_open(reader)
+        service.signal(signal.SIGKILL)
+        self.wait_for_end(pidfd)
+
+    def wait_for_end(self, pidfd):
+        self.assertEqual(select.select([pidfd], [], [], 60)[0], [pidfd])
+        os.close(pidfd)
+
+    def test_a_configuration_with_an_error_ends_with_health_0_where_the_plc_is_known(self):
+        for more, told in (("\n[tracking]\nvoxel_sise = 0.5\n", True), ("\n[plc.write]\nbasis = 300\n", False)):
+            with self.subTest(more):
+                plc = self.start(Plc())
+                self.write_config(plc.port, more)
+                self.assertEqual(self.run_to_end().returncode, 78)
+                last = [(record["health"], record["state"]) for record in plc.writes()[-1:]]
+                self.assertEqual(last, [(0, 7)] if told else [])
+
+    def test_a_plc_that_never_answers_does_not_hold_up_the_end(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as silent:
+            silent.bind(("127.0.0.1", 0))
+            silent.listen()
+            self.write_config(silent.getsockname()[1])
+            text = self.config.read_text(encoding="utf-8")
+            self.config.write_text(text.replace("[plc]\n", "[plc]\nresponse_timeout_ms = 5000\n"), encoding="utf-8")
+            service = self.start(Service(PROGRAM, self.config, self.folder))
+            service.wait_ready()
+            service.signal(signal.SIGTERM)
+            self.assertEqual(service.wait(), 0, service.err.all)
+            self.assertTrue(any("the end took too long" in line for line in service.err.all), service.err.all)
 
     def test_port_in_use_is_one_line_and_exit_1(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:

@@ -37,7 +37,8 @@ namespace {
 std::string toml(std::uint16_t lidar_port, std::uint16_t plc_port) {
   return "[plc]\nhost = \"127.0.0.1\"\nport = " + std::to_string(plc_port) +
          "\n[[lidar]]\nmodel = \"velodyne_vlp16\"\nbind = \"127.0.0.1\"\nport = " +
-         std::to_string(lidar_port) + "\n[hull]\nmap = \"room.pcd\"\n";
+         std::to_string(lidar_port) +
+         "\nmount = { xyz = [0.2, -0.3, 0.5], rpy_deg = [35.0, 20.0, 10.0] }\n[hull]\nmap = \"room.pcd\"\n";
 }
 
 TEST(ReloadFailure, WithNothingToFallBackToTheRegistersEndAtHealthZero) {
@@ -49,10 +50,10 @@ TEST(ReloadFailure, WithNothingToFallBackToTheRegistersEndAtHealthZero) {
   ASSERT_TRUE(write_pcd(folder.path() / "room.pcd", RoomLidar::map()));
   const auto config = folder.file("hulltrackd.toml", toml(lidar_port, plc.server().port()));
   SyslogSink log({}, true);
-  Service service(config, room_service(lidar_port, plc.server().port()), signals, log);
+  Service service({.config_file = config, .reader = {.program = HULLTRACKD_PROGRAM}}, signals, log);
   auto end = std::async(std::launch::async, [&] { return service.run(); });
 
-  const auto healthy = plc.wait_for([](const WriteBlock& block) { return block.health; });
+  const auto healthy = plc.wait_for([](const WriteBlock& block) { return block.health; }, 0);
   if (!healthy) {
     ASSERT_EQ(kill(getpid(), SIGTERM), 0);
     end.get();
