@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/base/text.hpp"
@@ -73,12 +75,18 @@ int check(const std::string& file) {
   return 0;
 }
 
+/// RuntimeDirectory= of the unit, where one can be written; nothing for a service that is started by hand.
+std::optional<std::filesystem::path> runtime_folder() {
+  const char* const folder = std::getenv("RUNTIME_DIRECTORY");
+  return folder != nullptr ? std::optional<std::filesystem::path>(folder) : std::nullopt;
+}
+
 int serve(const Options& options) {
   Signals signals;  // before the log's threads, which inherit the mask
   const bool log_to_stderr = options.to_stderr || isatty(STDERR_FILENO) == 1;
   SyslogSink log({}, log_to_stderr);  // until [log] is known
   try {
-    Service service({.config_file = options.config}, signals, log);
+    Service service({.config_file = options.config, .runtime_folder = runtime_folder()}, signals, log);
     const int code = service.run();
     print(service.problems());
     return code;

@@ -27,13 +27,13 @@ constexpr Nanoseconds kEndPatience = std::chrono::seconds(3);
 }  // namespace
 
 Service::Service(ServiceSetup setup, Signals& signals, SyslogSink& log)
-    : setup_(std::move(setup)), signals_(signals), log_(log) {}
+    : setup_(std::move(setup)), signals_(signals), log_(log), restarts_(setup_.runtime_folder) {}
 
 int Service::run() {
   if (const std::optional<int> ended = start()) {
     return *ended;
   }
-  second_began_ = minute_began_ = steady_now();
+  session_began_ = second_began_ = minute_began_ = steady_now();
   notifier_.ready();
   while (!stopping_ && !failure_.get()) {
     wait();
@@ -44,83 +44,11 @@ int Service::run() {
                  : end("stopped as asked", kExitStopped);
 }
 
-/// Nothing once a session runs, else the exit code.
-std::optional<int> Service::start() {
-  read_files(false);
-  while (!preparer_->result()) {
-    wait();
-    take_signals();
-    if (const std::optional<std::string> failure = failure_.get()) {
-      return end("stopped by a fault of its own: " + *failure, kExitFailed);
-    }
-    if (stopping_) {
-      return end("stopped as asked, before it was ready", kExitStopped);
-    }
-    if (std::exchange(reload_asked_, false)) {
-      read_files(false);
-    }
-    const SteadyTime now = steady_now();
-    preparer_->step(now);
-    meet_plc();
-    if (!stand_in_ || stand_in_->watch().overdue(now).empty()) {
-      notifier_.starting(now);
-    }
-  }
-  Preparation preparation = *std::move(preparer_->result());
-  preparer_.reset();
-  if (!preparation.prepared) {
-    return give_up(preparation);
-  }
-  start_first_session(*std::move(preparation.prepared));
-  return std::nullopt;
-}
-
 void Service::read_files(bool beside_session) {
   ReaderSetup reader = setup_.reader;
   reader.low_priority = beside_session;
   preparer_.emplace(setup_.config_file, reader, Preparer::Goal::run, steady_now());
-}
-
-void Service::meet_plc() {
-  const std::optional<ConfigReading>& reading = preparer_->configuration();
-  if (!reading || stand_in_) {
-    return;
-  }
-  log_.apply(reading->readable.log);
-  plc_ = reading->plc;
-  if (plc_) {
-    stand_in_ =
-        std::make_unique<PlcStandIn>(*plc_, PlcStandIn::Meaning::starting, log_, on_failure(), registers_);
-  }
-}
-
-int Service::give_up(const Preparation& preparation) {
-  problems_ = preparation.problems;
-  return end("not started: " + counted(problems_.size(), "problem") + " with " + setup_.config_file.string() +
-                 " or the files that it names, told on standard error",
-             preparation.may_pass ? kExitFailed : kExitConfig);
-}
-
-void Service::start_first_session(Prepared prepared) {
-  plc_ = prepared.config.plc;
-  log_.apply(prepared.config.log);
-  if (stand_in_) {
-    registers_ = stand_in_->hand_over();
-    stand_in_.reset();
-  }
-  try {
-    start_session(prepared);
-  } catch (const std::exception&) {
-    log_.write(LogLevel::error, "not started; " + farewell_words(say_farewell()));
-    throw;
-  }
-  prepared_ = std::move(prepared);
-  const Config& config = prepared_.config;
-  log_.write(
-      LogLevel::notice,
-      format_text("started: %s, map %s with %s, PLC %s:%u", counted(config.lidars.size(), "LiDAR").c_str(),
-                  config.map_file.c_str(), counted(prepared_.map_points, "point").c_str(),
-                  config.plc.host.c_str(), config.plc.port));
+  met_ = false;
 }
 
 void Service::start_session(const Prepared& prepared) {
@@ -178,6 +106,9 @@ int Service::end(const std::string& why, int code) {
     std::_Exit(code);
   });
   preparer_.reset();
+  if (code == kExitStopped) {
+    restarts_.end();
+  }
   if (!plc_) {
     log_.write(LogLevel::error, why + "; the PLC could not be told, because [plc] is not known");
     return code;
@@ -275,6 +206,9 @@ void Service::report(SteadyTime now) {
   const WriteBlock registers = session_->registers();
   notifier_.status(status_line(registers, second, now - second_began_));
   second_began_ = now;
+  if (now - session_began_ >= kGoodSpell && !std::exchange(good_spell_told_, true)) {
+    restarts_.forget();
+  }
   minute_.add(second);
   if (now - minute_began_ >= kSummaryPeriod) {
     log_.write(LogLevel::info, summary_line(registers, minute_, now - minute_began_));

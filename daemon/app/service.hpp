@@ -4,6 +4,7 @@
 // their own (preparer.hpp). At the start the PLC is told first: health 0 as soon as [plc] is known, and so on
 // until the first session takes over. SIGTERM and SIGINT end it at any time, with a last write of health 0,
 // state 7; SIGHUP reads the files again and swaps only when all of them are good.
+// After failures in a row it waits before it tries again (restart_record.hpp); SIGHUP ends the wait.
 // The watchdog is fed only while every thread makes progress.
 // Failure: an exit code, after one line in the log. run() throws when there is nothing to run: the first
 // session cannot start, or after a reload neither the new configuration nor the old one can (the PLC is
@@ -22,6 +23,7 @@
 #include "daemon/app/plc_stand_in.hpp"
 #include "daemon/app/preparer.hpp"
 #include "daemon/app/progress_log.hpp"
+#include "daemon/app/restart_record.hpp"
 #include "daemon/app/session.hpp"
 #include "daemon/app/signals.hpp"
 #include "daemon/app/syslog_sink.hpp"
@@ -36,6 +38,7 @@ inline constexpr int kExitConfig = 78;  // EX_CONFIG of sysexits.h; RestartPreve
 struct ServiceSetup {
   std::filesystem::path config_file;  // read again on SIGHUP
   ReaderSetup reader = {};
+  std::optional<std::filesystem::path> runtime_folder = {};  // RuntimeDirectory= of the unit; none by hand
 };
 
 class Service {
@@ -51,8 +54,11 @@ class Service {
 
  private:
   std::optional<int> start();
+  std::optional<int> wait_after_failures(const RestartRecord::Verdict& before);
   void read_files(bool beside_session);
+  std::optional<int> turn_without_session();
   void meet_plc();
+  void hand_over_registers();
   int give_up(const Preparation& preparation);
   void start_first_session(Prepared prepared);
   void start_session(const Prepared& prepared);
@@ -80,6 +86,7 @@ class Service {
   ProgressLog progress_log_{log_, Notifier::watchdog_timeout()};
   Mailbox<std::optional<std::string>> failure_;  // a thread's, once it has ended
   std::optional<Preparer> preparer_;             // while files are read, at the start or for a reload
+  bool met_ = false;                             // [plc] of what preparer_ reads is known and taken
   std::vector<Problem> problems_;
 
   // Who talks to the PLC: the session, before the first one the stand-in, between two of them nobody.
@@ -89,9 +96,13 @@ class Service {
   RegisterMemory registers_;  // of whoever talked before
   Prepared prepared_;         // the session's
 
+  RestartRecord restarts_;
+  bool waiting_ = false;       // after failures, before the next try
   bool reload_asked_ = false;  // by a signal, and not begun yet
   bool stopping_ = false;
   Figures minute_;
+  SteadyTime session_began_{};  // the first one
+  bool good_spell_told_ = false;
   SteadyTime second_began_{};
   SteadyTime minute_began_{};
 };

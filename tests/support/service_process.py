@@ -104,7 +104,7 @@ class Plc(Process):
 class Service(Process):
     """hulltrackd with a notification socket of its own; `--stderr` gives its log."""
 
-    def __init__(self, program, config, folder, watchdog_usec=None, stderr=subprocess.PIPE):
+    def __init__(self, program, config, folder, watchdog_usec=None, stderr=subprocess.PIPE, runtime_folder=None):
         path = str(pathlib.Path(folder) / "notify")
         self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.notify.bind(path)
@@ -113,6 +113,8 @@ class Service(Process):
         self.notice_thread.start()
         env = dict(os.environ, NOTIFY_SOCKET=path)
         env.pop("WATCHDOG_USEC", None)
+        if runtime_folder:
+            env["RUNTIME_DIRECTORY"] = str(runtime_folder)
         if watchdog_usec:
             env["WATCHDOG_USEC"] = str(watchdog_usec)
         super().__init__([program, "--config", config, "--stderr"], env, stderr)

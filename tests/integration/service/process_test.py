@@ -308,6 +308,48 @@ class ServiceTest(unittest.TestCase):
             self.assertEqual(service.wait(), 0, service.err.all)
             self.assertTrue(any("the end took too long" in line for line in service.err.all), service.err.all)
 
+    # -- after failures in a row
+
+    def waiting(self, plc):
+        """A service that has failed so often that it waits for a minute."""
+        (self.folder / "failures").write_text("9\n", encoding="ascii")
+        (self.folder / "last-end").write_text("signal killed SEGV\n", encoding="ascii")
+        self.write_config(plc.port)
+        service = self.start(Service(PROGRAM, self.config, self.folder, runtime_folder=self.folder))
+        service.err.find(lambda line: "failed 10 times in a row (the last end: signal killed SEGV)" in line, "why it waits")
+        plc.wait_for(lambda record: record["state"] == 5, "of a service that waits")
+        return service
+
+    def test_waits_after_failures_in_a_row_with_the_plc_informed_until_it_is_told_to_try(self):
+        plc = self.start(Plc())
+        service = self.waiting(plc)
+        plc.wait_for(lambda record: record["heartbeat"] >= 10, "with the tenth heartbeat")
+        self.assertEqual({(record["health"], record["state"]) for record in plc.writes()}, {(0, 5)})
+        self.assertFalse(any("READY" in notice for notice in list(service.notices.queue)))
+        service.signal(signal.SIGHUP)
+        service.wait_ready()
+        plc.wait_for(lambda record: record["state"] == 0, "of a service that starts")
+        self.assert_unbroken_heartbeat(plc)
+        service.signal(signal.SIGTERM)
+        self.assertEqual(service.wait(), 0)
+        self.assertFalse((self.folder / "failures").exists(), "an end that was asked for is no failure")
+
+    def test_stops_at_once_while_it_waits_after_failures(self):
+        plc = self.start(Plc())
+        service = self.waiting(plc)
+        service.signal(signal.SIGTERM)
+        self.assertEqual(service.wait(), 0, service.err.all)
+        self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+
+    def test_a_start_that_fails_is_counted(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind(("127.0.0.1", 0))
+            self.lidar_port = taken.getsockname()[1]
+            self.write_config(free_port(socket.SOCK_STREAM))
+            for failures in ("0\n", "1\n", "2\n"):
+                self.assertEqual(self.run_to_end(runtime_folder=self.folder).returncode, 1)
+                self.assertEqual((self.folder / "failures").read_text(encoding="ascii"), failures)
+
     def test_port_in_use_is_one_line_and_exit_1(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
             taken.bind(("127.0.0.1", 0))
