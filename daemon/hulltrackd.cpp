@@ -17,6 +17,7 @@
 #include "daemon/app/live_time.hpp"
 #include "daemon/app/preparer.hpp"
 #include "daemon/app/reader.hpp"
+#include "daemon/app/reload_desk.hpp"
 #include "daemon/app/service.hpp"
 #include "daemon/app/signals.hpp"
 #include "daemon/app/syslog_sink.hpp"
@@ -31,6 +32,7 @@ struct Options {
   bool check_config = false;
   bool print_config = false;
   bool to_stderr = false;
+  bool reload = false;
 };
 
 void print(const std::vector<Problem>& problems) {
@@ -99,7 +101,20 @@ int serve(const Options& options) {
   }
 }
 
+/// As long as one reading of the files may take (180 s, reader_process.hpp) and making the map (60 s); the
+/// unit's TimeoutStartSec= is longer.
+constexpr Nanoseconds kReloadPatience = std::chrono::minutes(4);
+
+int reload() {
+  const ReloadAnswer answer = ask_for_reload(runtime_folder().value_or("/run/hulltrackd"), kReloadPatience);
+  std::fputs(answer.text.c_str(), answer.reloaded ? stdout : stderr);
+  return answer.reloaded ? 0 : kExitFailed;
+}
+
 int run(const Options& options) {
+  if (options.reload) {
+    return reload();
+  }
   if (options.print_config) {
     return print_values(options.config);
   }
@@ -130,6 +145,8 @@ int main(int argc, char** argv) {
                              "Read everything the service would read, name every problem, and exit");
   app.add_flag("--print-config", options.print_config, "Print the values in force as TOML, and exit")
       ->excludes(check);
+  app.add_flag("--reload", options.reload,
+               "Ask the running service to read its files again, wait, and tell what came of it");
   app.add_flag("--stderr", options.to_stderr, "Log to standard error too, as on a terminal");
   app.footer(
       "Manual: hulltrackd(8). Exit codes: 0 stopped, 1 failed, 2 command line, 78 configuration or map.");

@@ -34,6 +34,7 @@ int Service::run() {
     return *ended;
   }
   session_began_ = second_began_ = minute_began_ = steady_now();
+  open_desk();
   notifier_.ready();
   while (!stopping_ && !failure_.get()) {
     wait();
@@ -64,9 +65,21 @@ GuardedThread::OnFailure Service::on_failure() {
   };
 }
 
-/// For a signal, for what the reader has to say, or a turn.
+/// A service that cannot be asked for a reload is one all the same.
+void Service::open_desk() {
+  try {
+    desk_.emplace(setup_.runtime_folder);
+  } catch (const std::exception& error) {
+    log_.write(LogLevel::warning,
+               std::string("`hulltrackd --reload` will not work, only SIGHUP: ") + error.what());
+  }
+}
+
+/// For a signal, for what the reader has to say, for somebody who asks, or a turn.
 void Service::wait() const {
-  std::array<pollfd, 2> entries{{{signals_.fd(), POLLIN, 0}, {preparer_ ? preparer_->fd() : -1, POLLIN, 0}}};
+  std::array<pollfd, 3> entries{{{signals_.fd(), POLLIN, 0},
+                                 {preparer_ ? preparer_->fd() : -1, POLLIN, 0},
+                                 {desk_ ? desk_->fd() : -1, POLLIN, 0}}};
   poll(entries.data(), entries.size(), static_cast<int>(kTurn.count()));
 }
 
@@ -75,6 +88,7 @@ void Service::take_signals() {
     stopping_ = stopping_ || signal == ServiceSignal::stop;
     reload_asked_ = reload_asked_ || signal == ServiceSignal::reload;
   }
+  reload_asked_ = (desk_ && desk_->take_requests()) || reload_asked_;
 }
 
 void Service::turn(SteadyTime now) {
@@ -105,6 +119,7 @@ int Service::end(const std::string& why, int code) {
     log.flush();
     std::_Exit(code);
   });
+  desk_.reset();
   preparer_.reset();
   if (code == kExitStopped) {
     restarts_.end();
@@ -152,18 +167,28 @@ void Service::finish_reload() {
     begin_reload();
   } else if (preparation.prepared) {
     swap_to(*std::move(preparation.prepared));
-    notifier_.ready();
   } else {
     refuse_reload(preparation.problems);
   }
 }
 
 void Service::refuse_reload(const std::vector<Problem>& problems) {
+  std::string lines;
   for (const Problem& problem : problems) {
     log_.write(LogLevel::error, to_string(problem));
+    lines += to_string(problem) + '\n';
   }
-  log_.write(LogLevel::error,
-             "reload refused: the old configuration stays in force. Mend the lines above, then reload again");
+  const std::string verdict =
+      "reload refused: the old configuration stays in force. Mend the lines above, then reload again";
+  log_.write(LogLevel::error, verdict);
+  tell_of_reload(false, lines + verdict);
+}
+
+/// Whoever has asked, and the service manager.
+void Service::tell_of_reload(bool reloaded, const std::string& text) {
+  if (desk_) {
+    desk_->answer(reloaded, text + '\n');
+  }
   notifier_.ready();
 }
 
@@ -175,7 +200,9 @@ void Service::swap_to(Prepared next) {
     prepared_ = std::move(next);
     plc_ = prepared_.config.plc;
     log_.apply(prepared_.config.log);
-    log_.write(LogLevel::notice, "reload: the new configuration is in force; the hull is searched for again");
+    const std::string verdict = "reload: the new configuration is in force; the hull is searched for again";
+    log_.write(LogLevel::notice, verdict);
+    tell_of_reload(true, verdict);
   } catch (const std::exception& refusal) {
     fall_back(refusal.what());
   }
@@ -184,7 +211,9 @@ void Service::swap_to(Prepared next) {
 void Service::fall_back(const std::string& refusal) {
   try {
     start_session(prepared_);
-    log_.write(LogLevel::error, "reload refused: " + refusal + ". The old configuration stays in force");
+    const std::string verdict = "reload refused: " + refusal + ". The old configuration stays in force";
+    log_.write(LogLevel::error, verdict);
+    tell_of_reload(false, verdict);
   } catch (const std::exception&) {
     log_.write(LogLevel::error, "reload failed: " + refusal +
                                     ". The old configuration cannot go on either; " +

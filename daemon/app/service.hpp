@@ -3,7 +3,8 @@
 // Runs in the main thread, ten turns a second, and never waits for a file: those are read by a process of
 // their own (preparer.hpp). At the start the PLC is told first: health 0 as soon as [plc] is known, and so on
 // until the first session takes over. SIGTERM and SIGINT end it at any time, with a last write of health 0,
-// state 7; SIGHUP reads the files again and swaps only when all of them are good.
+// state 7; SIGHUP, or somebody at the reload desk, has the files read again; they are in force only when all
+// of them are good.
 // After failures in a row it waits before it tries again (restart_record.hpp); SIGHUP ends the wait.
 // The watchdog is fed only while every thread makes progress.
 // Failure: an exit code, after one line in the log. run() throws when there is nothing to run: the first
@@ -23,6 +24,7 @@
 #include "daemon/app/plc_stand_in.hpp"
 #include "daemon/app/preparer.hpp"
 #include "daemon/app/progress_log.hpp"
+#include "daemon/app/reload_desk.hpp"
 #include "daemon/app/restart_record.hpp"
 #include "daemon/app/session.hpp"
 #include "daemon/app/signals.hpp"
@@ -72,9 +74,11 @@ class Service {
   void begin_reload();
   void finish_reload();
   void refuse_reload(const std::vector<Problem>& problems);
+  void tell_of_reload(bool reloaded, const std::string& text);
   void swap_to(Prepared next);
   void fall_back(const std::string& refusal);
 
+  void open_desk();
   void supervise(SteadyTime now);
   void report(SteadyTime now);
   [[nodiscard]] GuardedThread::OnFailure on_failure();
@@ -97,8 +101,9 @@ class Service {
   Prepared prepared_;         // the session's
 
   RestartRecord restarts_;
-  bool waiting_ = false;       // after failures, before the next try
-  bool reload_asked_ = false;  // by a signal, and not begun yet
+  std::optional<ReloadDesk> desk_;  // once a session runs
+  bool waiting_ = false;            // after failures, before the next try
+  bool reload_asked_ = false;       // by a signal, and not begun yet
   bool stopping_ = false;
   Figures minute_;
   SteadyTime session_began_{};  // the first one

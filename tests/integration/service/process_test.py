@@ -350,6 +350,23 @@ class ServiceTest(unittest.TestCase):
                 self.assertEqual(self.run_to_end(runtime_folder=self.folder).returncode, 1)
                 self.assertEqual((self.folder / "failures").read_text(encoding="ascii"), failures)
 
+    # -- asking for a reload
+
+    def test_whoever_asks_for_a_reload_is_told_what_came_of_it(self):
+        plc = self.start(Plc())
+        self.write_config(plc.port)
+        self.assertEqual(self.run_to_end("--reload", runtime_folder=self.folder).returncode, 1, "nobody is there")
+        service = self.start(Service(PROGRAM, self.config, self.folder, runtime_folder=self.folder))
+        service.wait_ready()
+        good = self.run_to_end("--reload", runtime_folder=self.folder)
+        self.assertEqual(good.returncode, 0, good.stderr)
+        self.assertIn("new configuration is in force", good.stdout)
+        self.write_config(plc.port, "\n[tracking]\nvoxel_sise = 0.5\n")
+        bad = self.run_to_end("--reload", runtime_folder=self.folder)
+        self.assertEqual(bad.returncode, 1)
+        self.assertIn("voxel_sise: unknown key", bad.stderr)
+        self.assertIn("the old configuration stays in force", bad.stderr)
+
     def test_port_in_use_is_one_line_and_exit_1(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
             taken.bind(("127.0.0.1", 0))
