@@ -26,7 +26,9 @@ def files_below(folder):
 
 def check(found, expected, unit, prefix):
     assert found == set(expected), (found ^ set(expected))
-    assert f"ExecStart={prefix}/bin/hulltrackd --config /etc/hulltrackd/" in unit.read_text(encoding="utf-8")
+    text = unit.read_text(encoding="utf-8")
+    for command in (f"ExecStart={prefix}/bin/hulltrackd --config /etc/hulltrackd/", f"ExecReload={prefix}/bin/hulltrackd --"):
+        assert command in text, command
 
 
 def main(cmake, build):

@@ -180,15 +180,33 @@ class UnitTest(unittest.TestCase):
         until(lambda: "the new configuration is in force" in journal(), "the reload")
         self.wait_healthy()
         CONFIG.write_text(GOOD + "nonsense = 1\n", encoding="utf-8")
-        systemctl("reload", UNIT)
+        self.assertNotEqual(systemctl("reload", UNIT).returncode, 0)
         until(lambda: "reload refused" in journal(), "the refusal")
         self.wait_healthy()
-        self.assertEqual(main_pid(), pid)
+        self.assertEqual((main_pid(), property_of("ActiveState")), (pid, "active"))
+        asked = subprocess.run(["/opt/hulltrackd", "--reload"], capture_output=True, text=True, check=False)
+        self.assertEqual(asked.returncode, 1)
+        self.assertIn("nonsense: unknown key", asked.stderr)
 
     def test_is_restarted_after_it_was_killed_as_by_the_kernel_out_of_memory(self):
         pid = main_pid()
         os.kill(pid, signal.SIGKILL)
         self.wait_restarted(pid, 1)
+
+    def test_waits_after_failures_in_a_row_and_the_plc_sees_a_fault_meanwhile(self):
+        for restarts in (1, 2, 3):
+            pid = main_pid()
+            os.kill(pid, signal.SIGKILL)
+            self.wait_restarted(pid, restarts)
+        begin = time.monotonic_ns()
+        os.kill(main_pid(), signal.SIGKILL)
+        self.plc.wait_for(lambda write: write["mono_ns"] > begin and write["state"] == 5, "of a service that waits")
+        until(lambda: "failed 4 times in a row (the last end: signal killed KILL)" in journal(), "why it waits")
+        self.wait_healthy()
+        # From the moment of its end on: the old service's last, then nothing but health 0 until a session runs.
+        states = [write["state"] for write in self.plc.writes() if write["mono_ns"] > begin]
+        self.assertEqual(set(states[states.index(5):states.index(0)]), {5})
+        self.assertEqual(property_of("NRestarts"), "4")
 
     def test_is_restarted_by_the_watchdog_after_a_hang(self):
         pid = main_pid()
@@ -202,6 +220,34 @@ class UnitTest(unittest.TestCase):
         until(lambda: property_of("ActiveState") == "failed", "failed")
         self.assertEqual((property_of("ExecMainStatus"), property_of("NRestarts")), ("78", "0"))
         systemctl("reset-failed", UNIT)
+
+    def test_a_restart_into_an_error_leaves_no_health_behind(self):
+        CONFIG.write_text(GOOD + "nonsense = 1\n", encoding="utf-8")
+        self.wait_healthy()
+        os.kill(main_pid(), signal.SIGKILL)
+        until(lambda: property_of("ActiveState") == "failed", "failed")
+        self.assertEqual(property_of("ExecMainStatus"), "78")
+        last = self.plc.writes()[-1]
+        self.assertEqual((last["health"], last["state"]), (0, 7))
+        systemctl("reset-failed", UNIT)
+
+    def test_what_reads_the_files_comes_last_for_the_processor_and_first_for_the_kernel(self):
+        pid, pipe = main_pid(), CONFIG.with_name("pipe")
+        os.mkfifo(pipe, 0o644)
+        self.addCleanup(pipe.unlink)
+        pipe.chmod(0o644)
+        CONFIG.write_text(GOOD.replace('"velodyne_vlp16"', '"hesai_xt32"\ncalibration = "pipe"'), encoding="utf-8")
+        reload = subprocess.Popen(["systemctl", "reload", UNIT], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with open(pipe, "wb"):  # returns when it is there
+            reader = next(int(child) for child in
+                          pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split())
+            self.assertEqual(pathlib.Path(f"/proc/{reader}/oom_score_adj").read_text(encoding="ascii"), "1000\n")
+            self.assertEqual(os.getpriority(os.PRIO_PROCESS, reader), 10)
+            os.kill(reader, signal.SIGKILL)  # as the kernel does
+        self.assertNotEqual(reload.wait(PATIENCE_S), 0)
+        until(lambda: "reload refused" in journal(), "the refusal")
+        self.wait_healthy()
+        self.assertEqual((main_pid(), property_of("ActiveState")), (pid, "active"))
 
     def test_a_stuck_journal_holds_nothing_up(self):
         pid, journald = main_pid(), int(property_of("MainPID", "systemd-journald.service"))

@@ -81,7 +81,7 @@ def furnish(root, hulltrackd, room_lidar, support, unit):
     write(root / "etc/machine-id", "uninitialized\n")
     units = root / "etc/systemd/system"
     text = unit.read_text(encoding="utf-8")
-    write(units / unit.name, text.replace("ExecStart=/usr/bin/", "ExecStart=/opt/"))
+    write(units / unit.name, text.replace("=/usr/bin/hulltrackd", "=/opt/hulltrackd"))
     write(units / f"{unit.name}.d/sanitizer.conf", DROP_IN)
     write(units / "probe.service", PROBE_UNIT)
     for name in MASKED:

@@ -20,7 +20,8 @@ def main(unit_path, program):
         return 77
     text = pathlib.Path(unit_path).read_text(encoding="utf-8")
     for promise in ("Type=notify", "WatchdogSec=1", "Restart=on-failure", "RestartPreventExitStatus=78",
-                    "ExecReload=/bin/kill -HUP $MAINPID"):
+                    "ExecReload=/usr/bin/hulltrackd --reload", "RuntimeDirectoryPreserve=restart",
+                    "OOMPolicy=continue", "TimeoutStopSec=5"):
         assert promise in text.splitlines(), f"{unit_path}: lacks {promise}"
 
     with tempfile.TemporaryDirectory() as folder:
