@@ -57,8 +57,8 @@ class BlockIndex {
   /// Where the key stands, or where it would be put.
   [[nodiscard]] std::size_t place_of(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
-    // 2^64 / golden ratio spreads neighbouring keys, best in the highest bits, which all of a key's bits reach
-    // (Knuth, multiplicative hashing).
+    // 2^64 / golden ratio spreads neighbouring keys, best in the highest bits, which all of a key's bits
+    // reach (Knuth, multiplicative hashing).
     auto at = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15U) >> (64 - bits_));
     while (slots_[at].number != kNone && slots_[at].key != key) {
       at = (at + 1) & mask;

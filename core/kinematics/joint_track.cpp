@@ -12,7 +12,8 @@ constexpr Nanoseconds kStill = std::chrono::milliseconds(500);
 
 }  // namespace
 
-std::optional<JointTrack::Misfit> JointTrack::misfit(const JointSample& sample, MeasurementTime reach_until) const {
+std::optional<JointTrack::Misfit> JointTrack::misfit(const JointSample& sample,
+                                                     MeasurementTime reach_until) const {
   reach_until = std::min(reach_until, sample.time);
   if (auto fast = too_fast(sample, reach_until)) {
     return fast;
@@ -29,7 +30,8 @@ std::optional<JointTrack::Misfit> JointTrack::misfit(const JointSample& sample, 
   return std::nullopt;
 }
 
-std::optional<JointTrack::Misfit> JointTrack::too_fast(const JointSample& sample, MeasurementTime reach_until) const {
+std::optional<JointTrack::Misfit> JointTrack::too_fast(const JointSample& sample,
+                                                       MeasurementTime reach_until) const {
   const JointValues value = values_of(sample.joints);
   const double elapsed = to_seconds(reach_until - newest_time()) + spread_;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -42,8 +44,10 @@ std::optional<JointTrack::Misfit> JointTrack::too_fast(const JointSample& sample
   return std::nullopt;
 }
 
-/// Of a machine that speeds up by a, a line over T has the speed of T / 2 ago, and its end is off by a T^2 / 12.
-std::optional<JointTrack::Misfit> JointTrack::off_the_line(const Line& line, const JointSample& sample, MeasurementTime reach_until) const {
+/// Of a machine that speeds up by a, a line over T has the speed of T / 2 ago, and its end is off by a T^2
+/// / 12.
+std::optional<JointTrack::Misfit> JointTrack::off_the_line(const Line& line, const JointSample& sample,
+                                                           MeasurementTime reach_until) const {
   const JointValues value = values_of(sample.joints);
   const double T = to_seconds(line.span);
   const double since_mean = to_seconds(sample.time - line.time);

@@ -30,8 +30,8 @@ using JointValues = std::array<double, 3>;
 inline constexpr JointValues kHalfContract{0.025, radians(0.05), radians(0.05)};
 
 /// No machine speeds up or brakes faster, m/s^2 and rad/s^2: wet steel on rails carries .15 g and about two
-/// thirds of the wheels have brakes, so .1 g, five times what drives do; as much at the tip of a short boom of
-/// 25 m. One that stops harder still loses its health for the stop.
+/// thirds of the wheels have brakes, so .1 g, five times what drives do; as much at the tip of a short boom
+/// of 25 m. One that stops harder still loses its health for the stop.
 inline constexpr JointValues kAcceleration{1.0, 1.0 / 25.0, 1.0 / 25.0};
 
 class JointTrack {
@@ -49,8 +49,8 @@ class JointTrack {
   /// What a sample that does not belong here is off by.
   struct Misfit {
     std::size_t joint = 0;
-    bool rate = false;    // it would have to move faster than max_rate since the newest sample
-    double off = 0.0;     // from the newest sample, or from where the motion leads
+    bool rate = false;  // it would have to move faster than max_rate since the newest sample
+    double off = 0.0;   // from the newest sample, or from where the motion leads
     double allowed = 0.0;
   };
   /// Nothing if `sample`, later than the newest, can be the next one. The machine is given the time until

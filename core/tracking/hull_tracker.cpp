@@ -5,6 +5,7 @@
 
 #include "core/base/text.hpp"
 #include "core/geometry/box.hpp"
+#include "core/integrity/joint_motion.hpp"
 #include "core/integrity/machine_witness.hpp"
 #include "core/tracking/expected_distance.hpp"
 #include "core/tracking/health.hpp"
@@ -42,6 +43,7 @@ struct HullTracker::Impl {
   Visibility visibility;
   Integrity integrity;
   MachineWitness machine_witness;
+  JointMotionWitness joint_motion;
   ExpectedDistance expected_distance;
   HealthMemory memory;
   MotionGauge motion;
@@ -63,6 +65,7 @@ struct HullTracker::Impl {
         finder(c, *map),
         visibility(std::max(Integrity::kSight, c.health.metric_range)),
         machine_witness(c.quay, std::move(quay), machine, c.hull.region),
+        joint_motion(machine),
         motion(bounding_box(map->cloud_H())),
         views(scan_filter.sensors().size()) {}
 
@@ -72,6 +75,7 @@ struct HullTracker::Impl {
   [[nodiscard]] PlaneStep certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
                                        TrackResult& result) const;
   void look(const Joints& joints_mid);
+  void follow_joints(const MachineStand& standing, const TrackResult& result, MachineFinding& finding);
   [[nodiscard]] MachineStand stand(const JointHistory& joints, MeasurementTime time) const;
   DistanceMetrics measure(const Pose& T_W_H);
   IntegrityReport inspect(const Pose& T_W_H);
@@ -96,6 +100,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   if (inputs.reacquire) {
     integrity.forget();
     machine_witness.forget();
+    joint_motion.forget();
   }
   // The pose is that of the middle of the scan, so the joints must answer there too.
   const JointHistory::Answer mid = joints.at(result.time);
@@ -109,12 +114,15 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     scan_filter.run(scan, joints, drift(), filtered);
     const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);
-    evidence.machine = machine_witness.look(result.time, filtered, views, stand(joints, result.time));
+    const MachineStand standing = stand(joints, result.time);
+    evidence.machine = machine_witness.look(result.time, filtered, views, standing);
+    result.joints_confirmed = evidence.machine.confirmed;
     const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
     search(evidence, result, confirmed);
     if (result.registered && !evidence.joints_on_trial &&
         (evidence.integrity.faults & fault::contradicted) == 0) {
       finder.learn(result.time, found);
+      follow_joints(standing, result, evidence.machine);
     }
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
@@ -234,6 +242,17 @@ void HullTracker::Impl::look(const Joints& joints_mid) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     const Pose T_W_L = lidar_pose(scan_filter.machine(), joints_mid, scan_filter.sensors()[i].mount);
     views[i].rebuild(filtered.returns_W[i], T_W_L);
+  }
+}
+
+/// What the hull's motion says of the joints counts where no quay map has the better word.
+void HullTracker::Impl::follow_joints(const MachineStand& standing, const TrackResult& result,
+                                      MachineFinding& finding) {
+  joint_motion.add(result.time, standing, config.hull.reference_point + result.displacement,
+                   result.T_W_H.linear());
+  if (finding.faults == 0 && !finding.confirmed) {
+    finding.reason = joint_motion.contradiction();
+    finding.faults = finding.reason.empty() ? Faults{0} : fault::plc_value;
   }
 }
 

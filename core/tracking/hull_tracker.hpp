@@ -59,7 +59,7 @@ struct TrackResult {
   std::string reason;  // why health is 0, in plain words with figures; empty when healthy
 
   /// The scan itself shows that the joints are right on all six axes of the LiDAR's pose in W, by what stands
-  /// still on the quay. Nothing confirms them yet.
+  /// still on the quay.
   bool joints_confirmed = false;
 
   MotionProducts motion;

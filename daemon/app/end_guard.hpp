@@ -2,8 +2,8 @@
 //
 // The service manager would do so by SIGKILL (TimeoutStopSec= of the unit), and nobody would know why. A PLC
 // that does not answer can hold up the last write for several response timeouts, a stuck thread for ever.
-// Thread rule: made and destroyed by one thread; `last_resort` runs in a thread of its own and must not return
-// to anything that the first thread may have destroyed.
+// Thread rule: made and destroyed by one thread; `last_resort` runs in a thread of its own and must not
+// return to anything that the first thread may have destroyed.
 #pragma once
 
 #include <condition_variable>

@@ -2,9 +2,9 @@
 //
 // From the start on, as soon as [plc] is known: what the registers still say of a service that died must not
 // stand while files are read. Also while the service waits before it tries again, and it says the last word
-// of a service that cannot start. It is the plc thread with nobody beside it, so command word, state 6 and the
-// rest are as in a session, which goes on from hand_over().
-// Thread rule: owned by the main thread. Failure: as a thread of a session, told to `on_failure`.
+// of a service that cannot start. It is the plc thread with nobody beside it, so command word, state 6 and
+// the rest are as in a session, which goes on from hand_over(). Thread rule: owned by the main thread.
+// Failure: as a thread of a session, told to `on_failure`.
 #pragma once
 
 #include "daemon/app/exchange.hpp"

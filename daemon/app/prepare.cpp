@@ -11,6 +11,7 @@
 #include "core/io/map_file.hpp"
 #include "core/map/hull_map.hpp"
 #include "daemon/app/memory_file.hpp"
+#include "daemon/app/quay_file.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {
@@ -87,11 +88,15 @@ class FileReader {
       begins_(PreparationStep::calibration, i);
       within_memory(key, config.lidars[i].calibration, [&] { read_calibration_of(config.lidars[i], key); });
     }
+    if (!config.quay_file.empty()) {
+      within_memory("quay.map", config.quay_file.string(), [&] { read_quay(config); });
+    }
     if (!config.map_file.empty()) {
       within_memory("hull.map", config.map_file.string(), [&] { read_map(config); });
     }
     if (!files_.problems.empty()) {
       files_.map_H.clear();
+      files_.quay_W.clear();
     }
     sort_by_line(files_.problems);
     return std::move(files_);
@@ -113,10 +118,27 @@ class FileReader {
       complain("hull.map", map.error().message);
       return;
     }
-    files_.map_remark = remark_on_dropped(config.map_file, *map);
+    remark(remark_on_dropped(config.map_file, *map));
     begins_(PreparationStep::map_making, 0);
     const HullMap made(map->cloud);
     files_.map_H = std::move(map->cloud);
+  }
+
+  void read_quay(const Config& config) {
+    begins_(PreparationStep::quay, 0);
+    Result<QuayFile> quay = read_quay_file(config.quay_file);
+    if (!quay) {
+      complain("quay.map", quay.error().message);
+      return;
+    }
+    remark(quay->remark);
+    files_.quay_W = std::move(quay->cloud_W);
+  }
+
+  void remark(const std::string& line) {
+    if (!line.empty()) {
+      files_.map_remark += (files_.map_remark.empty() ? "" : "\n") + line;
+    }
   }
 
   void within_memory(const std::string& key, const std::string& file, const std::function<void()>& work) {

@@ -20,6 +20,7 @@ enum class PreparationStep : std::uint8_t {
   configuration,       // being read
   configuration_read,  // its bytes have been handed over
   calibration,         // being read
+  quay,                // being read, and what the tracker needs of it being made
   map,                 // being read
   map_making,          // what the tracker needs of it
   done,

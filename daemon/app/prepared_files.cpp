@@ -1,5 +1,6 @@
 #include "daemon/app/prepared_files.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <utility>
@@ -10,7 +11,7 @@
 namespace hulltrack {
 namespace {
 
-constexpr std::string_view kMagic = "HULLPRE1";
+constexpr std::string_view kMagic = "HULLPRE2";
 constexpr std::uint64_t kMaxProblems = 100'000;  // a configuration of 1 MiB has fewer lines with a key
 constexpr std::uint64_t kMaxLidars = 16;
 constexpr std::uint64_t kMaxText = 1U << 20U;  // bytes of a name, message or remark
@@ -25,6 +26,10 @@ void put(std::string& out, std::uint64_t number) {
 void put(std::string& out, std::string_view text) {
   put(out, std::uint64_t{text.size()});
   out.append(text);
+}
+
+bool is_map_point(const Point& point) {
+  return (point.array().abs() <= kMaxMapCoordinate).all();  // false for NaN
 }
 
 /// Takes numbers and texts off the front of bytes. After the first that is not there all others are 0 or
@@ -44,6 +49,22 @@ class Taker {
     std::memcpy(&value, rest_.data(), sizeof value);
     rest_.remove_prefix(sizeof value);
     return value <= most ? value : fail();
+  }
+
+  /// Only of points that a map may have.
+  Cloud cloud() {
+    const std::uint64_t points = number(kMaxMapPoints);
+    if (points > rest_.size() / sizeof(Point)) {
+      fail();
+      return {};
+    }
+    Cloud cloud(points);
+    std::memcpy(static_cast<void*>(cloud.data()), rest_.data(), points * sizeof(Point));
+    rest_.remove_prefix(points * sizeof(Point));
+    if (!std::all_of(cloud.begin(), cloud.end(), is_map_point)) {
+      fail();
+    }
+    return cloud;
   }
 
   std::string text(std::uint64_t longest) {
@@ -68,10 +89,6 @@ class Taker {
   bool ok_ = true;
 };
 
-bool is_map_point(const Point& point) {
-  return (point.array().abs() <= kMaxMapCoordinate).all();  // false for NaN
-}
-
 }  // namespace
 
 void write_prepared_files(int fd, const PreparedFiles& files) {
@@ -87,9 +104,13 @@ void write_prepared_files(int fd, const PreparedFiles& files) {
     put(head, calibration);
   }
   put(head, files.map_remark);
-  put(head, std::uint64_t{files.map_H.size()});
   write_all(fd, head);
-  write_all(fd, {reinterpret_cast<const char*>(files.map_H.data()), files.map_H.size() * sizeof(Point)});
+  for (const Cloud* cloud : {&files.map_H, &files.quay_W}) {
+    std::string count;
+    put(count, std::uint64_t{cloud->size()});
+    write_all(fd, count);
+    write_all(fd, {reinterpret_cast<const char*>(cloud->data()), cloud->size() * sizeof(Point)});
+  }
 }
 
 Result<PreparedFiles> parse_prepared_files(std::string_view bytes) {
@@ -109,17 +130,10 @@ Result<PreparedFiles> parse_prepared_files(std::string_view bytes) {
     files.calibrations.push_back(taker.text(kMaxCalibration));
   }
   files.map_remark = taker.text(kMaxText);
-  const std::uint64_t points = taker.number(kMaxMapPoints);
-  if (!taker.ok() || taker.rest().size() != points * sizeof(Point) ||
-      (points == 0) == files.problems.empty()) {
+  files.map_H = taker.cloud();
+  files.quay_W = taker.cloud();
+  if (!taker.ok() || !taker.rest().empty() || files.map_H.empty() == files.problems.empty()) {
     return damaged;
-  }
-  files.map_H.resize(points);
-  std::memcpy(static_cast<void*>(files.map_H.data()), taker.rest().data(), taker.rest().size());
-  for (const Point& point : files.map_H) {
-    if (!is_map_point(point)) {
-      return damaged;
-    }
   }
   return files;
 }

@@ -19,9 +19,11 @@ namespace hulltrack {
 
 struct PreparedFiles {
   std::vector<Problem> problems = {};
-  std::vector<std::string> calibrations = {};  // content of each LiDAR's file, in the order of the LiDARs; "" = none
+  std::vector<std::string> calibrations =
+      {};  // content of each LiDAR's file, in the order of the LiDARs; "" = none
   std::string map_remark = {};
-  Cloud map_H = {};  // empty if and only if there are problems
+  Cloud map_H = {};   // empty if and only if there are problems
+  Cloud quay_W = {};  // empty with problems, and where no quay map is named
 };
 
 /// A calibration is some kilobytes; this is far more than any.

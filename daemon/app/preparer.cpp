@@ -48,11 +48,13 @@ Preparation make_ready(MemoryFile file, const std::optional<ConfigReading>& read
   }
   Prepared prepared{.config = *reading->config,
                     .map = nullptr,
+                    .quay = nullptr,
                     .map_remark = std::move(files->map_remark),
                     .map_points = files->map_H.size()};
   prepared.calibrations = calibrations_in_memory(*files, prepared.config);
   if (goal == Preparer::Goal::run) {
     prepared.map = std::make_shared<const HullMap>(std::move(files->map_H));
+    prepared.quay = files->quay_W.empty() ? nullptr : std::make_shared<const QuayMap>(files->quay_W);
   }
   return {.prepared = std::move(prepared), .problems = {}};
 }
@@ -106,10 +108,11 @@ void Preparer::reader_ended() {
     refuse(problem_of_reader(), reader_->was_killed());
     return;
   }
-  making_ = in_a_thread(std::packaged_task<Preparation()>(
-      [file = std::make_shared<MemoryFile>(std::move(reader_->files())), reading = configuration_,
-       config_file = config_file_,
-       goal = goal_] { return make_ready(std::move(*file), reading, config_file, goal); }));
+  making_ = in_a_thread(
+      std::packaged_task<Preparation()>([file = std::make_shared<MemoryFile>(std::move(reader_->files())),
+                                         reading = configuration_, config_file = config_file_, goal = goal_] {
+        return make_ready(std::move(*file), reading, config_file, goal);
+      }));
   reader_.reset();
 }
 
@@ -124,10 +127,15 @@ Problem Preparer::problem_of_reader() const {
         config_file_, "lidar." + std::to_string(lidar) + ".calibration",
         configuration_->readable.lidars.at(lidar).calibration + ": reading it" + how);
   }
+  if (reader_->at() == PreparationStep::quay) {
+    return configuration_->problem_with(config_file_, "quay.map",
+                                        configuration_->readable.quay_file.string() + ": reading it" + how);
+  }
   const std::string map = configuration_->readable.map_file.string();
   return configuration_->problem_with(
       config_file_, "hull.map",
-      map + (reader_->at() == PreparationStep::map ? ": reading it" : ": making the tracker's map of it") + how);
+      map + (reader_->at() == PreparationStep::map ? ": reading it" : ": making the tracker's map of it") +
+          how);
 }
 
 void Preparer::refuse(Problem problem, bool may_pass) {

@@ -1,10 +1,10 @@
 // From a configuration file to everything that a session runs on, without ever waiting.
 //
-// The reader (reader_process.hpp) reads and judges the files; this side takes the very bytes that were judged,
-// never the files, and makes the map of them in a thread of its own. [plc] is known long before the map.
-// Whatever the files do to the reader is a problem at the line that names them.
-// Thread rule: the main thread; see ReaderProcess. A map in the making cannot be interrupted: when this object
-// goes, its thread is left to itself, and the process must then end without destroying what the thread uses
+// The reader (reader_process.hpp) reads and judges the files; this side takes the very bytes that were
+// judged, never the files, and makes the map of them in a thread of its own. [plc] is known long before the
+// map. Whatever the files do to the reader is a problem at the line that names them. Thread rule: the main
+// thread; see ReaderProcess. A map in the making cannot be interrupted: when this object goes, its thread is
+// left to itself, and the process must then end without destroying what the thread uses
 // (maps_in_the_making()). Failure: the constructor throws when no reader can be started; else problems.
 #pragma once
 
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/map/hull_map.hpp"
+#include "core/map/quay_map.hpp"
 #include "daemon/app/reader_process.hpp"
 #include "daemon/config/read_config.hpp"
 
@@ -25,6 +26,7 @@ namespace hulltrack {
 struct Prepared {
   Config config;
   std::shared_ptr<const HullMap> map;
+  std::shared_ptr<const QuayMap> quay;  // nullptr = none is configured
   std::string map_remark;      // what to know of a map that can be used all the same; empty = nothing
   std::size_t map_points = 0;  // as read
   /// What `calibration` of the LiDARs names; they live as long as this.

@@ -36,11 +36,12 @@ Result<QuayFile> read_quay_file(const std::filesystem::path& file) {
   if (!read) {
     return read.error();
   }
-  QuayFile quay{std::make_shared<const QuayMap>(read->cloud), remark_on_dropped(file, *read)};
+  QuayFile quay{.cloud_W = std::move(read->cloud), .remark = remark_on_dropped(file, *read)};
+  quay.map = std::make_shared<const QuayMap>(quay.cloud_W);
   if (quay.map->planes().size() < kFewest) {
     return Error{
         file.string() + ": has " + counted(quay.map->planes().size(), "flat piece") + " in " +
-        counted(read->cloud.size(), "point") + ", " + std::to_string(kFewest) +
+        counted(quay.cloud_W.size(), "point") + ", " + std::to_string(kFewest) +
         " are needed: survey the quay without a ship, metres, at least 8 points within 0.3 m of each "
         "other"};
   }

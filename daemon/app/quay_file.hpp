@@ -14,8 +14,9 @@
 namespace hulltrack {
 
 struct QuayFile {
-  std::shared_ptr<const QuayMap> map;  // nullptr = no file is named
-  std::string remark;                  // what such a map cannot tell; empty = nothing
+  Cloud cloud_W = {};
+  std::shared_ptr<const QuayMap> map = {};  // of it; nullptr = no file is named
+  std::string remark = {};                  // what such a map cannot tell; empty = nothing
 };
 
 /// An empty name is no file, and no error.

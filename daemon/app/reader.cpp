@@ -96,7 +96,8 @@ int run_reader(int count, const char* const* arguments) {
     die_with(std::stoi(arguments[1]));
     const unsigned long memory_mb = std::stoul(arguments[2]);
     bound_itself(memory_mb, std::stoul(arguments[3]));
-    write_prepared_files(kReaderFilesFd, read_all(arguments[5], memory_mb, std::string_view(arguments[4]) == "low"));
+    write_prepared_files(kReaderFilesFd,
+                         read_all(arguments[5], memory_mb, std::string_view(arguments[4]) == "low"));
     tell(PreparationStep::done, 0);
     return EXIT_SUCCESS;
   } catch (const std::exception& error) {

@@ -1,9 +1,9 @@
 // The process that reads configuration, calibrations and map for the service.
 //
-// The same program, started with kReaderFlag by ReaderProcess (reader_process.hpp). It bounds itself before it
-// touches a file: memory, processor time, no core file, beside a session a low priority, first in line when
-// the kernel runs out of memory, and it dies with its parent. It writes the configuration's bytes into one file
-// in memory and all else into another (prepared_files.hpp), and each step into a pipe as it begins.
+// The same program, started with kReaderFlag by ReaderProcess (reader_process.hpp). It bounds itself before
+// it touches a file: memory, processor time, no core file, beside a session a low priority, first in line
+// when the kernel runs out of memory, and it dies with its parent. It writes the configuration's bytes into
+// one file in memory and all else into another (prepared_files.hpp), and each step into a pipe as it begins.
 // Failure: a file that is no good is a problem in what it hands over; a file that kills it is for the parent
 // to tell.
 #pragma once

@@ -23,8 +23,8 @@ namespace hulltrack {
 struct ReaderSetup {
   std::filesystem::path program = "/proc/self/exe";  // that answers to kReaderFlag
   /// At a reload there are at once the map in force (less than the reader needed to make it, M), the points
-  /// that the reader hands over (12 of the 60 bytes that it needs a point, M / 5) and either the reader or the
-  /// same work done again in the service (M): 2.2 M, and 64 MB of all else, in 2048 MB.
+  /// that the reader hands over (12 of the 60 bytes that it needs a point, M / 5) and either the reader or
+  /// the same work done again in the service (M): 2.2 M, and 64 MB of all else, in 2048 MB.
   std::size_t memory_mb = 900;
   /// Ten times what a map that fills the memory takes (15 million points, 6 s).
   std::chrono::seconds cpu{60};

@@ -118,8 +118,8 @@ ReloadAnswer ask_for_reload(const std::filesystem::path& folder, Nanoseconds pat
   const auto text = read_to_end(fd, steady_now() + patience);
   close(fd);
   if (!text) {
-    return {false, format_text("no answer for %.0f s; the log says what the service does\n",
-                               to_seconds(patience))};
+    return {false,
+            format_text("no answer for %.0f s; the log says what the service does\n", to_seconds(patience))};
   }
   if (text->empty()) {
     return {false, "the service ended before it answered; the log says why\n"};

@@ -2,10 +2,9 @@
 //
 // The service manager restarts it 0.1 s after every end that nobody asked for, for ever. What fails at once
 // each time would fill the log and keep the computer busy, so from the fourth failure in a row on the service
-// itself waits, with the PLC informed (plc_stand_in.hpp). The count lives in a file that outlasts a restart and
-// nothing else.
-// Thread rule: the main thread. Failure: a file that cannot be read or written counts as no failure: without
-// a memory there is no pause.
+// itself waits, with the PLC informed (plc_stand_in.hpp). The count lives in a file that outlasts a restart
+// and nothing else. Thread rule: the main thread. Failure: a file that cannot be read or written counts as no
+// failure: without a memory there is no pause.
 #pragma once
 
 #include <filesystem>
@@ -18,8 +17,8 @@ namespace hulltrack {
 
 /// A line a minute in the log is enough, and a cause that is gone is noticed within a minute.
 inline constexpr Nanoseconds kLongestPause = std::chrono::minutes(1);
-/// After this long at work a failure is the first again. No less than the longest pause: whoever fails again and
-/// again has been at work for half of the time.
+/// After this long at work a failure is the first again. No less than the longest pause: whoever fails again
+/// and again has been at work for half of the time.
 inline constexpr Nanoseconds kGoodSpell = kLongestPause;
 
 /// After so many failures in a row: none up to 3, then a second, doubling.

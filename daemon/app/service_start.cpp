@@ -13,7 +13,8 @@ namespace {
 std::string words_of(const RestartRecord::Verdict& before) {
   const std::string last = before.last_end.empty() ? "" : " (the last end: " + before.last_end + ")";
   return format_text(
-      "failed %d times in a row%s, never at work for a minute: trying again in %.0f s, or on SIGHUP; until then "
+      "failed %d times in a row%s, never at work for a minute: trying again in %.0f s, or on SIGHUP; until "
+      "then "
       "the PLC sees health 0, state fault. The lines before each end say why",
       before.failures, last.c_str(), to_seconds(before.pause));
 }
@@ -139,11 +140,11 @@ void Service::start_first_session(Prepared prepared) {
   }
   prepared_ = std::move(prepared);
   const Config& config = prepared_.config;
-  log_.write(LogLevel::notice,
-             format_text("started: %s, map %s with %s, PLC %s:%u",
-                         counted(config.lidars.size(), "LiDAR").c_str(), config.map_file.c_str(),
-                         counted(prepared_.map_points, "point").c_str(), config.plc.host.c_str(),
-                         config.plc.port));
+  log_.write(
+      LogLevel::notice,
+      format_text("started: %s, map %s with %s, PLC %s:%u", counted(config.lidars.size(), "LiDAR").c_str(),
+                  config.map_file.c_str(), counted(prepared_.map_points, "point").c_str(),
+                  config.plc.host.c_str(), config.plc.port));
 }
 
 }  // namespace hulltrack

@@ -40,7 +40,8 @@ class PreparerTest : public testing::Test {
   void SetUp() override { ASSERT_TRUE(write_pcd(folder.path() / "room.pcd", RoomLidar::map())); }
 
   std::filesystem::path config(const std::string& lidar = "model = \"velodyne_vlp16\"\n") const {
-    return folder.file("a.toml", "[plc]\nhost = \"127.0.0.1\"\n[[lidar]]\n" + lidar + "[hull]\nmap = \"room.pcd\"\n");
+    return folder.file("a.toml",
+                       "[plc]\nhost = \"127.0.0.1\"\n[[lidar]]\n" + lidar + "[hull]\nmap = \"room.pcd\"\n");
   }
   /// A configuration whose calibration is a pipe: the reader waits until somebody writes.
   std::filesystem::path config_with_a_pipe() const {

@@ -15,7 +15,8 @@ using testing::stand_at;
 
 const Joints kWorking{12.0, radians(95.0), radians(-3.0)};
 
-/// All six axes measured to 5 mm and 0.03 deg about a point on the quay, the sensor moved by `twist` about it.
+/// All six axes measured to 5 mm and 0.03 deg about a point on the quay, the sensor moved by `twist` about
+/// it.
 Misplacement measured(const Twist& twist, const Eigen::Vector3d& centre_W, int axes = 6) {
   Misplacement seen;
   seen.centre_W = centre_W;
@@ -73,8 +74,9 @@ TEST(MachineDoubt, AJointThatReadsMoreThanWearExplainsIsAccusedByNameAndAmount) 
   const MachineStand stand = stand_at(kWorking);
   for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
     const Twist unit = joint_twist(quay_machine(), stand, joint, kQuay);
-    const double hidden =
-        doubt_machine(quay_machine(), stand, measured(Twist::Zero(), kQuay)).joints.at(std::size_t(joint)).hidden;
+    const double hidden = doubt_machine(quay_machine(), stand, measured(Twist::Zero(), kQuay))
+                              .joints.at(std::size_t(joint))
+                              .hidden;
     for (const double sign : {1.0, -1.0}) {
       const Misplacement seen = measured(sign * 1.2 * hidden * unit, kQuay);
       const MachineDoubt doubt = doubt_machine(quay_machine(), stand, seen);
@@ -92,8 +94,8 @@ TEST(MachineDoubt, AJointThatReadsMoreThanWearExplainsIsAccusedByNameAndAmount) 
 // What the manual promises of a quay that shows all axes: amounts that are seen whatever wear does meanwhile.
 TEST(MachineDoubt, TravelOfThirteenCentimetresAndSlewOfHalfADegreeCannotHide) {
   for (const double slew : {56.0, 90.0, 124.0}) {
-    const MachineDoubt doubt = doubt_machine(quay_machine(), stand_at({5.0, radians(slew), 0.0}),
-                                             measured(Twist::Zero(), kQuay));
+    const MachineDoubt doubt =
+        doubt_machine(quay_machine(), stand_at({5.0, radians(slew), 0.0}), measured(Twist::Zero(), kQuay));
     EXPECT_LT(doubt.joints.at(0).hidden, 0.13) << slew;
     EXPECT_LT(degrees(doubt.joints.at(1).hidden), 0.5) << slew;
     EXPECT_LT(degrees(doubt.joints.at(2).hidden), 0.9) << slew << ": a boom that sags looks the same";

@@ -28,14 +28,16 @@ class Frames {
   explicit Frames(std::shared_ptr<const QuayMap> map = quay_map(), const QuayConfig& quay = {})
       : witness_(quay, std::move(map), quay_machine(), kRegion) {}
 
-  MachineFinding run(int frames, const Joints& too_much, const std::vector<std::size_t>& surfaces = {0, 1, 2}) {
+  MachineFinding run(int frames, const Joints& too_much,
+                     const std::vector<std::size_t>& surfaces = {0, 1, 2}) {
     MachineFinding finding;
     for (int i = 0; i < frames; ++i) {
       const Joints reported{kWorking.d_x + too_much.d_x, kWorking.theta_r + too_much.theta_r,
                             kWorking.theta_p + too_much.theta_p};
       const QuayFrame frame =
           quay_frame(reported, misplaced(reported, kWorking), static_cast<unsigned>(frame_), 400, surfaces);
-      finding = witness_.look(MeasurementTime{milliseconds(100) * frame_++}, frame.scan, frame.views, frame.stand);
+      finding =
+          witness_.look(MeasurementTime{milliseconds(100) * frame_++}, frame.scan, frame.views, frame.stand);
     }
     return finding;
   }
@@ -113,7 +115,8 @@ TEST(MachineWitness, TheTopAloneShowsLuffAndConfirmsNothing) {
   EXPECT_FALSE(honest.confirmed);
   EXPECT_EQ(frames.run(20, {0.0, 0.0, radians(1.5)}).faults, fault::plc_value);
   Frames travelling(nullptr, quay);
-  EXPECT_EQ(travelling.run(20, {3.0, 0.0, 0.0}).faults, 0) << "a plane looks the same everywhere along itself";
+  EXPECT_EQ(travelling.run(20, {3.0, 0.0, 0.0}).faults, 0)
+      << "a plane looks the same everywhere along itself";
 }
 
 TEST(MachineWitness, WithoutQuayItSaysNothing) {

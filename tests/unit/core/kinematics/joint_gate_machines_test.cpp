@@ -19,9 +19,9 @@ using Verdict = JointGate::Verdict;
 
 /// Some of the fastest loaders: 30 m/min, .3 r/min; luff 8 m/min at 40 m.
 constexpr JointValues kSpeed{0.5, radians(1.8), radians(0.2)};
-constexpr double kRamp = 2.5;      // s from rest to full speed
-constexpr double kRun = 40.0;      // s of a run
-constexpr double kSettled = 3.0;   // s before anything goes wrong
+constexpr double kRamp = 2.5;     // s from rest to full speed
+constexpr double kRun = 40.0;     // s of a run
+constexpr double kSettled = 3.0;  // s before anything goes wrong
 
 /// One joint that starts, runs and stops at random times, in steps of a millisecond.
 class Axis {
@@ -95,7 +95,8 @@ std::vector<Polled> run(const Machine& machine, const Site& site, std::mt19937& 
                   .poll_period = Nanoseconds{static_cast<std::int64_t>(site.poll * 1e9)},
                   .has_heartbeat = site.heartbeat});
   std::uniform_real_distribution delay(0.0, site.jitter);
-  const double latency = site.jitter / 2 + (site.heartbeat ? std::min(site.poll, site.cycle) : site.cycle) / 2;
+  const double latency =
+      site.jitter / 2 + (site.heartbeat ? std::min(site.poll, site.cycle) : site.cycle) / 2;
   std::vector<Polled> all;
   std::int64_t newest = 0;
   for (double t = 1.0; t < kRun - 1.0; t += site.poll) {
@@ -146,9 +147,9 @@ TEST(JointGateMachines, ASlowPlcCostsASampleNowAndThenAndNeverAGap) {
   EXPECT_LT(1000 * refused, all) << refused << " of " << all;
 }
 
-/// What a believed value is off by: 1 is half of the contract, or what 50 ms of jitter make of a joint's speed
-/// if that is more. The gate allows as much about a prediction that is off by as much itself, so a single value
-/// up to 2 may pass; a frame has five.
+/// What a believed value is off by: 1 is half of the contract, or what 50 ms of jitter make of a joint's
+/// speed if that is more. The gate allows as much about a prediction that is off by as much itself, so a
+/// single value up to 2 may pass; a frame has five.
 double error(const Polled& polled, const Machine& machine) {
   const auto speed = [&](const Axis& axis) {
     return std::max(std::abs(axis.speed(polled.t)), std::abs(axis.speed(polled.t - 0.3)));
@@ -156,8 +157,8 @@ double error(const Polled& polled, const Machine& machine) {
   const JointValues speeds{speed(machine.travel), speed(machine.slew), speed(machine.luff)};
   double worst = 0.0;
   for (std::size_t i = 0; i < speeds.size(); ++i) {
-    worst = std::max(worst, std::abs(polled.shown[i] - polled.truth[i]) /
-                                std::max(kHalfContract[i], 0.05 * speeds[i]));
+    worst = std::max(
+        worst, std::abs(polled.shown[i] - polled.truth[i]) / std::max(kHalfContract[i], 0.05 * speeds[i]));
   }
   return worst;
 }
@@ -177,7 +178,8 @@ TEST(JointGateMachines, AStepIsRefusedOrHarmless) {
     };
     for (const Polled& polled : run(machine, kSites[seed % kSites.size()], random, step)) {
       if (polled.outcome.verdict == Verdict::believed) {
-        ASSERT_LE(error(polled, machine), kHarmless) << "seed " << seed << ", t " << polled.t << ", step " << size;
+        ASSERT_LE(error(polled, machine), kHarmless)
+            << "seed " << seed << ", t " << polled.t << ", step " << size;
       }
     }
   }
@@ -198,7 +200,8 @@ TEST(JointGateMachines, AGapWithWhateverBehindItIsRefusedOrHarmless) {
     };
     for (const Polled& polled : run(machine, kSites[seed % 4], random, gap)) {
       if (polled.outcome.verdict == Verdict::believed) {
-        ASSERT_LE(error(polled, machine), kHarmless) << "seed " << seed << ", t " << polled.t << ", off " << off;
+        ASSERT_LE(error(polled, machine), kHarmless)
+            << "seed " << seed << ", t " << polled.t << ", off " << off;
         believed += polled.t > until ? 1U : 0U;
       }
     }
@@ -255,7 +258,8 @@ TEST(JointGateMachines, ATravelThatFreezesAtFullSpeedIsRefusedWithinAFifthOfASec
     };
     for (const Polled& polled : run(machine, kSites[seed % 4], random, freeze)) {
       if (polled.outcome.verdict == Verdict::believed) {
-        ASSERT_LE(std::abs(polled.shown[0] - polled.truth[0]), 0.5 * 0.2) << "seed " << seed << ", t " << polled.t;
+        ASSERT_LE(std::abs(polled.shown[0] - polled.truth[0]), 0.5 * 0.2)
+            << "seed " << seed << ", t " << polled.t;
       }
     }
   }

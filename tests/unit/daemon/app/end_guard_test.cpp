@@ -17,7 +17,9 @@ TEST(EndGuard, ActsWhenTheEndDoesNotCome) {
 
 TEST(EndGuard, DoesNotActNorWaitWhenTheEndComes) {
   std::atomic<bool> acted = false;
-  { const EndGuard guard(std::chrono::hours(1), [&] { acted = true; }); }
+  {
+    const EndGuard guard(std::chrono::hours(1), [&] { acted = true; });
+  }
   EXPECT_FALSE(acted);
 }
 

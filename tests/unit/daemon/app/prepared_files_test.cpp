@@ -21,7 +21,10 @@ std::string bytes_of(const PreparedFiles& files) {
 }
 
 PreparedFiles good_files() {
-  return {.calibrations = {"", std::string("a\0b", 3)}, .map_remark = "one point left out", .map_H = {{1, 2, 3}, {4, 5, 6}}};
+  return {.calibrations = {"", std::string("a\0b", 3)},
+          .map_remark = "one point left out",
+          .map_H = {{1, 2, 3}, {4, 5, 6}},
+          .quay_W = {{7, 8, 9}}};
 }
 
 PreparedFiles bad_files() {
@@ -35,6 +38,7 @@ TEST(PreparedFiles, ArriveAsTheyWere) {
   EXPECT_EQ(good->calibrations, good_files().calibrations);
   EXPECT_EQ(good->map_remark, good_files().map_remark);
   EXPECT_EQ(good->map_H, good_files().map_H);
+  EXPECT_EQ(good->quay_W, good_files().quay_W);
   const auto bad = parse_prepared_files(bytes_of(bad_files()));
   ASSERT_TRUE(bad);
   ASSERT_EQ(bad->problems.size(), 2U);

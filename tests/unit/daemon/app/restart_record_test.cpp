@@ -72,7 +72,8 @@ TEST_F(RestartRecordTest, WhateverTheFilesHoldThePauseIsBounded) {
 
 TEST(RestartRecord, WithoutAMemoryThereIsNoPause) {
   for (const std::optional<std::filesystem::path>& folder :
-       {std::optional<std::filesystem::path>(), std::optional<std::filesystem::path>("/nonexistent/folder")}) {
+       {std::optional<std::filesystem::path>(),
+        std::optional<std::filesystem::path>("/nonexistent/folder")}) {
     for (int i = 0; i < 10; ++i) {
       EXPECT_EQ(RestartRecord(folder).begin().pause, seconds(0));
     }

@@ -98,6 +98,10 @@ max_speed = 0.1
 max_heel = 5
 max_trim = 2.5
 max_yaw = 1
+[quay]
+height = -0.15
+slope = [0.1, -0.6]
+map = "../maps/quay.pcd"
 [tracking]
 framing = "revolution"
 frame_rate_hz = 20
@@ -176,6 +180,11 @@ level = "debug"
   EXPECT_DOUBLE_EQ(c.tracker.hull.max_heel, radians(5.0));
   EXPECT_DOUBLE_EQ(c.tracker.hull.max_trim, radians(2.5));
   EXPECT_DOUBLE_EQ(c.tracker.hull.max_yaw, radians(1.0));
+  EXPECT_EQ(c.tracker.quay.height, -0.15);
+  EXPECT_TRUE(c.tracker.quay.top_is_witness);
+  ASSERT_TRUE(c.tracker.quay.slope);
+  EXPECT_DOUBLE_EQ(c.tracker.quay.slope->y(), radians(-0.6));
+  EXPECT_EQ(c.quay_file, "/maps/quay.pcd");
   EXPECT_EQ(c.framing.framing, Framing::revolution);
   EXPECT_EQ(c.framing.frame_rate_hz, 20.0);
   EXPECT_EQ(c.tracker.registration.voxel_size, 0.4);
