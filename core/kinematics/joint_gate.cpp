@@ -68,6 +68,7 @@ JointGate::Outcome JointGate::offer(const JointReading& reading) {
 
 void JointGate::reacquire() {
   believed_.clear();
+  established_ = false;
   end_trial();
   last_outcome_ = {};
 }
@@ -76,10 +77,14 @@ JointGate::Outcome JointGate::judge(const JointSample& sample) {
   if (std::string reason = out_of_range(sample); !reason.empty()) {
     return {Verdict::refused, fault::plc_value, std::move(reason), false};
   }
+  const bool gap = !believed_.empty() && sample.time - believed_.newest_time() > kGap;
+  if (gap && !established_) {
+    believed_.clear();
+  }
   if (believed_.empty()) {
     return believe(sample);
   }
-  if (sample.time - believed_.newest_time() > kGap) {
+  if (gap) {
     return try_out(sample);
   }
   // What is within reach when a value is refused for the first time stays so: it does not grow with the wait.
@@ -89,6 +94,7 @@ JointGate::Outcome JointGate::judge(const JointSample& sample) {
 
 JointGate::Outcome JointGate::believe(const JointSample& sample) {
   believed_.add(sample);
+  established_ = established_ || believed_.span() >= kSpeedKnown;
   end_trial();
   return {Verdict::believed, 0, {}, false};
 }
@@ -114,8 +120,7 @@ JointGate::Outcome JointGate::try_out(const JointSample& sample) {
     continue_trial(sample);
   }
   if (trial_confirms()) {
-    believed_ = trial_.track;
-    end_trial();
+    believe_trial();
     return {Verdict::believed, 0, {}, false};
   }
   const bool needs_edge = !trial_.at_old_place && !trial_.fits_motion;
@@ -169,6 +174,12 @@ bool JointGate::is_one_motion() const {
   return within(after->value, expected, kHalfContract) && within(rates, {}, most);
 }
 
+void JointGate::believe_trial() {
+  believed_ = trial_.track;
+  established_ = true;
+  end_trial();
+}
+
 void JointGate::end_trial() { trial_ = {empty_track(config_)}; }
 
 void JointGate::frame_done(MeasurementTime first, MeasurementTime last, bool confirmed) {
@@ -178,8 +189,7 @@ void JointGate::frame_done(MeasurementTime first, MeasurementTime last, bool con
   const bool inside = first >= trial_.track.began() && last <= trial_.track.newest_time();
   trial_.confirmed = confirmed && inside ? trial_.confirmed + 1 : 0;
   if (trial_.confirmed >= kConfirmedFrames) {
-    believed_ = trial_.track;
-    end_trial();
+    believe_trial();
     last_outcome_ = {};
   }
 }

@@ -17,7 +17,8 @@
 //           (d) a re-acquire edge says that a person has checked them.
 //           Samples that follow what was refused by its motion are no motion of the machine: (b) is out.
 // So what is within reach never grows with time. At the start, as after an edge, the first values in range
-// are believed. SI units. No failure but the verdict. Thread rule: one owner. Cost: that of two JointTracks.
+// are believed; a gap before they have lasted half a second, when nothing can have become of them yet, is a
+// start again. SI units. No failure but the verdict. Thread rule: one owner. Cost: that of two JointTracks.
 #pragma once
 
 #include <array>
@@ -101,6 +102,7 @@ class JointGate {
   void continue_trial(const JointSample& sample);
   [[nodiscard]] bool trial_confirms();
   [[nodiscard]] bool is_one_motion() const;
+  void believe_trial();
   void end_trial();
 
   [[nodiscard]] std::string out_of_range(const JointSample& sample) const;
@@ -110,6 +112,7 @@ class JointGate {
   JointGateConfig config_;
   std::array<Joint, 3> joints_;
   JointTrack believed_;
+  bool established_ = false;  // what is believed has lasted, or came out of a trial
   Trial trial_;
   std::optional<JointReading> last_;
   Outcome last_outcome_;

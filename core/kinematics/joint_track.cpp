@@ -44,8 +44,8 @@ std::optional<JointTrack::Misfit> JointTrack::too_fast(const JointSample& sample
   return std::nullopt;
 }
 
-/// Of a machine that speeds up by a, a line over T has the speed of T / 2 ago, and its end is off by a T^2
-/// / 12.
+/// Of a machine that speeds up by a, a line over T has the speed of T / 2 ago, and its end is off by
+/// a T^2 / 12.
 std::optional<JointTrack::Misfit> JointTrack::off_the_line(const Line& line, const JointSample& sample,
                                                            MeasurementTime reach_until) const {
   const JointValues value = values_of(sample.joints);

@@ -255,6 +255,32 @@ TEST(JointGate, APlcThatStartsColdWithAParkedMachineNeedsNobody) {
   EXPECT_EQ(poller.stand(milliseconds(600), 123.4).verdict, Verdict::believed);
 }
 
+TEST(JointGate, AStartThatIsBrokenOffIsAStartAgain) {
+  for (const bool edge : {false, true}) {
+    Poller poller;
+    if (edge) {
+      poller.stand(seconds(1), 50.0);
+      poller.gate().reacquire();
+    }
+    poller.stand(milliseconds(500), 10.0);
+    poller.nothing(seconds(1));
+    EXPECT_EQ(poller.travel(77.0).verdict, Verdict::believed);
+    poller.stand(milliseconds(500), 77.0);
+    poller.nothing(seconds(1));
+    EXPECT_EQ(poller.travel(10.0).verdict, Verdict::on_trial) << "it had lasted";
+  }
+}
+
+TEST(JointGate, WhatCameOutOfATrialIsNoStart) {
+  Poller poller;
+  poller.stand(seconds(1), 10.0);
+  poller.nothing(seconds(1));
+  ASSERT_EQ(poller.stand(milliseconds(280), 10.0).verdict, Verdict::believed);
+  poller.nothing(seconds(1));
+  poller.stand(seconds(5), 77.0);
+  EXPECT_EQ(poller.believed, 0);
+}
+
 TEST(JointGate, ReacquireBelievesTheNextValueInRange) {
   Poller poller;
   poller.stand(seconds(1), 10.0);
