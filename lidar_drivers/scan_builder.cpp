@@ -39,7 +39,8 @@ Result<ScanBuilder> ScanBuilder::create(const std::vector<LidarConfig>& lidars,
                 .range = model->range,
                 .decoder = std::move(decoder).value(),
                 .sequence = PacketSequence(wrap),
-                .clock = SensorClock(wrap)};
+                .clock = SensorClock(wrap),
+                .sender = SenderLock(config.timeout)};
     built.push_back(std::move(lidar));
   }
   return ScanBuilder(std::move(built), framing);
@@ -47,6 +48,16 @@ Result<ScanBuilder> ScanBuilder::create(const std::vector<LidarConfig>& lidars,
 
 ScanBuilder::ScanBuilder(std::vector<Lidar> lidars, const FramingConfig& framing)
     : framing_(framing.framing), lidars_(std::move(lidars)), frames_(framing, lidars_.size()) {}
+
+bool ScanBuilder::takes(std::size_t index, const Datagram& datagram) {
+  assert(index < lidars_.size());
+  Lidar& lidar = lidars_[index];
+  if (!lidar.config.source.empty() || lidar.sender.takes(datagram.source_ip, datagram.received)) {
+    return true;
+  }
+  ++frames_.counters(index).packets_rejected;
+  return false;
+}
 
 DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
   assert(index < lidars_.size());
@@ -69,6 +80,7 @@ DecodeOutcome ScanBuilder::add(std::size_t index, const Datagram& datagram) {
     lidar.rejected_port = datagram.source_port;
     return outcome;
   }
+  lidar.sender.decoded(datagram.source_ip, datagram.received);
   const PacketSequence::Step step = lidar.sequence.note(datagram.bytes, packet_, datagram.received);
   note_sequence(index, step);
   if (step.place == PacketSequence::Place::duplicate) return outcome;
@@ -194,7 +206,17 @@ LidarStatus ScanBuilder::status(std::size_t index) const {
   const Lidar& lidar = lidars_[index];
   LidarStatus status = lidar.status;
   status.clock = lidar.clock.reading();
+  status.packets_of_another = lidar.sender.dropped();
+  status.disputed = lidar.config.source.empty() && lidar.sender.disputed();
   return status;
+}
+
+std::string ScanBuilder::two_senders(std::size_t index) const {
+  assert(index < lidars_.size());
+  const Lidar& lidar = lidars_[index];
+  if (lidar.sender.dropped() == 0) return {};
+  return "two sensors send to UDP port " + std::to_string(lidar.config.port) + ": " +
+         format_ipv4(lidar.sender.first()) + " and " + format_ipv4(lidar.sender.second());
 }
 
 std::string ScanBuilder::last_rejection(std::size_t index) const {

@@ -22,15 +22,18 @@
 #include "lidar_drivers/frame_assembler.hpp"
 #include "lidar_drivers/lidar_config.hpp"
 #include "lidar_drivers/packet_sequence.hpp"
+#include "lidar_drivers/sender_lock.hpp"
 #include "lidar_drivers/sensor_clock.hpp"
 
 namespace hulltrack {
 
 /// What is known of one LiDAR. Counters run from the start.
 struct LidarStatus {
-  std::uint64_t packets = 0;            // decoded, duplicates included
-  std::uint64_t packets_rejected = 0;   // not this model's datagrams; see last_rejection
-  std::uint64_t packets_held_back = 0;  // not decodable before the sensor tells its angles
+  std::uint64_t packets = 0;             // decoded, duplicates included
+  std::uint64_t packets_rejected = 0;    // not this model's datagrams; see last_rejection
+  std::uint64_t packets_of_another = 0;  // from a second sensor on the port, where `source` is empty: dropped
+  bool disputed = false;                 // by it: nobody can say which of the two is meant
+  std::uint64_t packets_held_back = 0;   // not decodable before the sensor tells its angles
   bool angles_contradicted = false;  // of the newest one held back: what the sensor told contradicts itself
   std::uint64_t informations = 0;    // datagrams without points: what the sensor tells of itself, its IMU
   std::uint64_t packets_lost = 0;    // missing between the sensor's time stamps
@@ -61,6 +64,10 @@ class ScanBuilder {
   ScanBuilder(ScanBuilder&&) noexcept = default;
   ScanBuilder& operator=(ScanBuilder&&) noexcept = default;
 
+  /// Whether a datagram of LiDAR `lidar` comes from the sensor whose datagrams are taken (sender_lock.hpp);
+  /// ask before each add(). What another sensor sent counts as foreign in the frame.
+  [[nodiscard]] bool takes(std::size_t lidar, const Datagram& datagram);
+
   /// Decodes one datagram of LiDAR `lidar` (index of the configuration's list) and sorts its points in, or
   /// takes in what it tells about the sensor.
   DecodeOutcome add(std::size_t lidar, const Datagram& datagram);
@@ -80,6 +87,8 @@ class ScanBuilder {
   [[nodiscard]] LidarStatus status(std::size_t lidar) const;
   /// Expected, seen and sender of the newest refused datagram, for the log; empty while there was none.
   [[nodiscard]] std::string last_rejection(std::size_t lidar) const;
+  /// "two sensors send to UDP port 2368: 192.168.1.201 and 192.168.1.202"; empty while there was one.
+  [[nodiscard]] std::string two_senders(std::size_t lidar) const;
   /// Finished frames that nobody took in time (the newest four are kept).
   [[nodiscard]] std::uint64_t frames_overrun() const { return frames_.frames_overrun(); }
   /// How often the stamps ran back by seconds, as in a recording across a clock that was set.
@@ -98,6 +107,7 @@ class ScanBuilder {
     std::unique_ptr<Decoder> decoder;
     PacketSequence sequence;
     SensorClock clock;
+    SenderLock sender;
     LidarStatus status{};
     DecodeOutcome last_rejection{};
     std::uint32_t rejected_ip = 0;

@@ -2,8 +2,9 @@
 //
 // Non-blocking: wait on fd() with epoll or poll, then call receive() until it returns nothing. Datagrams
 // from other senders than the LiDARs' are dropped here and counted. The kernel's stamp is converted to
-// the monotonic clock at once (receive_clock.hpp), so steps of the wall clock do not matter.
-// LiDARs that share a port share one source. Thread rule: one owner.
+// the monotonic clock at once (receive_clock.hpp), so steps of the wall clock do not matter. The kernel
+// counts (SO_RXQ_OVFL) what found no room and what a filter dropped as one; only a queue that was full had no
+// room. LiDARs that share a port share one source. Thread rule: one owner.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,8 @@ namespace hulltrack {
 struct UdpCounters {
   std::uint64_t received = 0;          // datagrams handed out
   std::uint64_t foreign = 0;           // from an address that is no LiDAR's: dropped
-  std::uint64_t kernel_overflows = 0;  // lost because the receive buffer was full (SO_RXQ_OVFL)
+  std::uint64_t kernel_overflows = 0;  // lost because the receive buffer was full
+  std::uint64_t filtered = 0;          // kept from this socket by a packet filter: IPAddressDeny= of a unit
   std::uint64_t unstamped = 0;         // no kernel stamp: the time of reading was used
 };
 
@@ -71,6 +73,8 @@ class UdpSource {
 
   explicit UdpSource(int fd);
   void enlarge_receive_buffer();
+  [[nodiscard]] bool is_queue_long() const;
+  void count_dropped(std::uint32_t since_opened);
   [[nodiscard]] Result<void> bind_to(const LidarConfig& lidar, bool multicast);
   [[nodiscard]] Result<void> join_group(const LidarConfig& lidar);
   [[nodiscard]] bool accepts(std::uint32_t ip) const;
@@ -79,7 +83,9 @@ class UdpSource {
   std::uint16_t port_ = 0;
   std::vector<std::uint32_t> allowed_;  // host byte order; empty = any
   UdpCounters counters_;
-  std::uint32_t last_overflow_ = 0;
+  std::uint32_t last_dropped_ = 0;
+  bool queue_was_long_ = false;     // and may have lost something that was not counted yet
+  bool queue_was_emptied_ = false;  // by the last call
   std::uint32_t foreign_ip_ = 0;
   std::uint16_t foreign_port_ = 0;
   std::vector<std::string> warnings_;

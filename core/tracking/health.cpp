@@ -263,6 +263,10 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   if (e.joints_on_trial) {  // good frames count: once the values are believed, these had the right ones too
     findings.add(State::degraded, fault::plc_value, e.joint_trouble);
   }
+  if ((e.standing & fault::foreign_packets) != 0) {
+    findings.add(State::degraded, fault::foreign_packets,
+                 "two sensors send to one LiDAR's port and nobody can say which is meant; set `source`");
+  }
   if (a_lidar_is_silent) {  // what the others see may well follow the hull, but not steer by
     findings.add(State::degraded, fault::lidar_silent, "a LiDAR is silent");
   }

@@ -41,9 +41,9 @@ struct SearchEvidence {
 struct Evidence {
   MeasurementTime time{};  // middle of the scan
   bool hold = false;
-  bool reacquire = false;        // rising edge
-  Faults standing = 0;           // plc_stale, plc_value, lidar_silent, clock
-  bool bracketed = false;        // joint samples bracket every packet
+  bool reacquire = false;  // rising edge
+  Faults standing = 0;     // plc_stale, plc_value, lidar_silent, clock; foreign_packets: a disputed sensor
+  bool bracketed = false;  // joint samples bracket every packet
   bool joints_on_trial = false;  // samples among them that nothing confirms yet
   std::string joint_trouble;     // why joint values are refused or on trial
   bool registered = false;       // a pose was found; what follows speaks of it

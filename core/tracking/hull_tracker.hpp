@@ -26,9 +26,11 @@ namespace hulltrack {
 
 /// What surrounds one scan besides its points.
 struct FrameInputs {
-  bool hold = false;            // the PLC's command word: no tracking wanted
-  bool reacquire = false;       // rising edge since the previous frame
-  Faults standing = 0;          // plc_stale, plc_value, lidar_silent, clock: what stands against the inputs
+  bool hold = false;       // the PLC's command word: no tracking wanted
+  bool reacquire = false;  // rising edge since the previous frame
+  /// What stands against the inputs: plc_stale, plc_value, lidar_silent, clock; foreign_packets: disputed
+  /// sensor.
+  Faults standing = 0;
   std::string joint_trouble{};  // why joint values are refused or on trial, for the reason; "" if none are
 };
 

@@ -53,6 +53,45 @@ TEST(ScanBuilder, DatagramsOutOfOrderAndTwiceLeaveTheFrameAsItWas) {
   EXPECT_LE(status.points_late, 2U * 384U);
 }
 
+TEST(ScanBuilder, TwoSensorsOnOnePortAreNeverMixedAndNamed) {
+  const auto stream = test::make_stream({.packets = 300});
+  auto alone = builder_for({lidar()});
+  const auto expected = build(alone, stream.packets);
+  auto builder = builder_for({lidar()});
+  std::vector<Scan> got;
+  for (const auto& packet : stream.packets) {
+    Datagram datagram = packet.datagram();
+    datagram.source_ip = 0xC0A801C9;
+    EXPECT_TRUE(builder.takes(0, datagram));
+    EXPECT_TRUE(builder.add(0, datagram).ok());
+    datagram.source_ip = 0xC0A801CA;
+    EXPECT_FALSE(builder.takes(0, datagram));
+    take_all(builder, got);
+  }
+  builder.finish();
+  take_all(builder, got);
+  EXPECT_EQ(point_times(got), point_times(expected));
+  for (const Scan& scan : got) EXPECT_GT(scan.lidars[0].packets_rejected, 0U);
+  EXPECT_EQ(builder.two_senders(0), "two sensors send to UDP port 2368: 192.168.1.201 and 192.168.1.202");
+  EXPECT_EQ(builder.status(0).packets_of_another, 300U);
+  EXPECT_TRUE(builder.status(0).disputed);
+  EXPECT_EQ(alone.two_senders(0), "");
+}
+
+TEST(ScanBuilder, ASourceAddressLeavesNothingToDispute) {
+  LidarConfig named = lidar();
+  named.source = "192.168.1.201";  // whoever hands over datagrams has looked
+  auto builder = builder_for({named});
+  const auto stream = test::make_stream({.packets = 20});
+  for (std::size_t i = 0; i < stream.packets.size(); ++i) {
+    Datagram datagram = stream.packets[i].datagram();
+    datagram.source_ip = 0xC0A801C9 + static_cast<std::uint32_t>(i % 2);
+    EXPECT_TRUE(builder.takes(0, datagram));
+    EXPECT_TRUE(builder.add(0, datagram).ok());
+  }
+  EXPECT_FALSE(builder.status(0).disputed);
+}
+
 TEST(ScanBuilder, LossIsCountedFromTheSensorsClockAcrossTheHour) {
   test::StreamOptions options{.packets = 2000};
   options.encoder.utc = seconds(3599);

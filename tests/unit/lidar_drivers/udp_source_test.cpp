@@ -2,10 +2,12 @@
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <limits>
 
 #include "lidar_drivers/datagram_router.hpp"
@@ -136,6 +138,27 @@ TEST(UdpSource, AFullReceiveBufferIsCounted) {
   receive(*source, source->counters().received + 1);
   EXPECT_EQ(source->counters().received + source->counters().kernel_overflows, 201U);
   EXPECT_GT(source->counters().kernel_overflows, 100U);
+}
+
+TEST(UdpSource, WhatAPacketFilterDropsIsNoFullBuffer) {
+  const LidarConfig config = loopback();
+  auto source = UdpSource::open({&config, 1});
+  ASSERT_TRUE(source.ok());
+  // As the unit's IPAddressDeny= does it, by length instead of address: longer than 100 bytes is dropped.
+  std::array<sock_filter, 4> code{{BPF_STMT(BPF_LD | BPF_W | BPF_LEN, 0),
+                                   BPF_JUMP(BPF_JMP | BPF_JGT | BPF_K, 100, 0, 1),
+                                   BPF_STMT(BPF_RET | BPF_K, 0), BPF_STMT(BPF_RET | BPF_K, 0xFFFF)}};
+  const sock_fprog program{code.size(), code.data()};
+  ASSERT_EQ(setsockopt(source->fd(), SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program), 0);
+  const Sender sender("127.0.0.1");
+  for (int i = 0; i < 50; ++i) {
+    sender.send(source->port(), "ours");
+    sender.send(source->port(), std::string(1206, 'x'));
+  }
+  sender.send(source->port(), "the next one brings the count");
+  EXPECT_EQ(receive(*source, 51).size(), 51U);
+  EXPECT_EQ(source->counters().filtered, 50U);
+  EXPECT_EQ(source->counters().kernel_overflows, 0U);
 }
 
 TEST(UdpSource, APortInUseSaysWhatToDo) {

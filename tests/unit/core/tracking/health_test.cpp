@@ -212,6 +212,14 @@ TEST(Health, NothingIsHealthyWithJointsOnTrialButGoodFramesCount) {
   EXPECT_EQ(machine.step().state, State::tracking) << "what is believed now was right then";
 }
 
+TEST(Health, NothingIsHealthyWhileItIsOpenWhichOfTwoSensorsIsMeant) {
+  Machine machine = tracking_machine();
+  const HealthVerdict verdict = machine.step([](Evidence& e) { e.standing = fault::foreign_packets; });
+  EXPECT_EQ(verdict.state, State::degraded);
+  EXPECT_EQ(verdict.faults, fault::foreign_packets);
+  EXPECT_NE(verdict.reason.find("set `source`"), std::string::npos);
+}
+
 TEST(Health, AScanWithoutJointsTellsWhyTheyWereRefused) {
   Machine machine = tracking_machine();
   const HealthVerdict verdict = machine.step([](Evidence& e) {
