@@ -28,6 +28,9 @@ enum class LinkOutcome {
   waiting,      // backing off: nothing was tried
 };
 
+/// The exception code of a PLC that cannot answer just now.
+inline constexpr int kExceptionBusy = 6;
+
 /// Lower-case words for logs.
 [[nodiscard]] const char* outcome_name(LinkOutcome outcome);
 

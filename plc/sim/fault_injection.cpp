@@ -53,6 +53,16 @@ PlcReading shown_reading(PlcFault fault, const PlcReading& current, const PlcRea
   return shown;
 }
 
+void tear_words(std::vector<std::uint16_t>& block, const std::vector<std::uint16_t>& previous,
+                const PlcReadConfig& config) {
+  for (const JointRegister* joint : {&config.travel, &config.slew, &config.luff}) {
+    if (register_count(joint->type) == 2) {
+      const auto second = static_cast<std::size_t>(joint->offset) + 1;
+      block[second] = previous[second];
+    }
+  }
+}
+
 void FaultInjection::set(PlcFault fault, int requests) {
   fault_ = fault;
   requests_left_ = requests;

@@ -22,6 +22,10 @@ namespace hulltrack::sim {
 [[nodiscard]] PlcReading shown_reading(PlcFault fault, const PlcReading& current, const PlcReading& previous,
                                        const PlcReadConfig& config);
 
+/// Puts the second register of every joint that has two back to what it was in `previous`.
+void tear_words(std::vector<std::uint16_t>& block, const std::vector<std::uint16_t>& previous,
+                const PlcReadConfig& config);
+
 /// Bytes of a reply that go out together.
 struct Chunk {
   Nanoseconds delay{0};  // from the reply's time

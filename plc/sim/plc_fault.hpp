@@ -26,9 +26,10 @@ enum class PlcFault {
   // the values in the read block
   frozen_heartbeat,  // joints still move
   torn_block,        // travel of the new cycle, the rest of the old one, tail copy behind (if there is one)
-  not_a_number,      // travel, lowest raw value where the register is an integer
-  infinite,          // travel
-  out_of_range,      // travel 1 m beyond its maximum
+  torn_words,    // of travel, slew and luff the first register of the new cycle, the second of the old one
+  not_a_number,  // travel, lowest raw value where the register is an integer
+  infinite,      // travel
+  out_of_range,  // travel 1 m beyond its maximum
 };
 
 }  // namespace hulltrack::sim

@@ -157,8 +157,11 @@ struct PlcServer::Impl {
   /// The read block as the PLC program shows it now.
   void present_joints() {
     const PlcReading shown = shown_reading(faults.fault(), current, previous, config.read);
+    std::vector<std::uint16_t> block = encode_read_block(shown, config.read);
+    if (faults.fault() == PlcFault::torn_words)
+      tear_words(block, encode_read_block(previous, config.read), config.read);
     int address = config.read.base;
-    for (const std::uint16_t value : encode_read_block(shown, config.read)) protocol.at(address++) = value;
+    for (const std::uint16_t value : block) protocol.at(address++) = value;
   }
 
   void change_fault(PlcFault next, int limit) {
