@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "core/base/status.hpp"
 #include "core/geometry/scan.hpp"
@@ -34,6 +35,7 @@ struct PlcView {
   bool hold = false;
   std::uint32_t reacquire_edges = 0;  // counted, so that track misses none between two frames
   Faults standing = 0;                // plc_stale, plc_value
+  std::string joint_trouble;          // why joint values are not believed; "" if they are
 };
 
 /// One frame that track is done with.
@@ -42,6 +44,7 @@ struct FrameDone {
   TrackResult result;
   SteadyTime last_received{};  // the scan's last packet
   SteadyTime done{};
+  MeasurementTime first_firing{}, last_firing{};  // of the scan
 };
 
 struct Exchange {
@@ -57,6 +60,11 @@ struct Exchange {
   std::atomic<bool> out_of_service = false;
   Doorbell track_bell;  // a scan or a joint sample has come
   Doorbell plc_bell;    // a frame is done
+  /// track has a scan and waits for its joint samples: what comes meanwhile is not late by its fault.
+  std::atomic<bool> awaiting_joints = false;
+
+  /// Hands the scan that rx has written over. True if it replaces one that track was too slow for.
+  bool publish_scan() { return scans.publish() && !awaiting_joints.load(std::memory_order_relaxed); }
 };
 
 }  // namespace hulltrack

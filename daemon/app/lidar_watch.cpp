@@ -44,7 +44,9 @@ LidarWatch::LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& 
       rate_log_(log),
       mode_log_(log, LogLevel::notice),
       sector_log_(log, LogLevel::info),
-      clock_log_(log) {}
+      clock_log_(log),
+      another_log_(log, LogLevel::error),
+      filtered_log_(log) {}
 
 Faults LidarWatch::update(const LidarEvidence& evidence, SteadyTime now) {
   update_silence(evidence, now);
@@ -53,6 +55,7 @@ Faults LidarWatch::update(const LidarEvidence& evidence, SteadyTime now) {
   Faults standing = 0;
   standing |= silent_ ? fault::lidar_silent : Faults{0};
   standing |= evidence.status.clock_fault ? fault::clock : Faults{0};
+  standing |= evidence.status.disputed ? fault::foreign_packets : Faults{0};
   return standing;
 }
 
@@ -91,6 +94,23 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
             static_cast<unsigned long long>(evidence.foreign), config_.port);
       },
       "no more datagrams from foreign senders");
+  tell(
+      another_log_, another_grows_.update(evidence.status.packets_of_another, now), now,
+      [&] {
+        return evidence.two_senders + "; set `source` to the one that is meant. " +
+               (evidence.status.disputed ? "Nobody can say which that is, so health is 0 until one is alone"
+                                         : "The first goes on alone, the other's datagrams are dropped");
+      },
+      "one sensor alone sends to its port again");
+  tell(
+      filtered_log_, filtered_grows_.update(evidence.filtered, now), now,
+      [&] {
+        return format_text(
+            "a packet filter of this computer has kept %s from UDP port %u, IPAddressDeny= of the unit for "
+            "one: somebody who is not named in IPAddressAllow= sends there. Poses are not affected",
+            counted(evidence.filtered, "datagram").c_str(), config_.port);
+      },
+      "no packet filter is at work any more");
   tell(
       rejected_log_, rejected_grows_.update(evidence.status.packets_rejected, now), now,
       [&] {

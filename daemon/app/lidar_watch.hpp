@@ -19,9 +19,11 @@ namespace hulltrack {
 struct LidarEvidence {
   LidarStatus status;
   std::string last_rejection;          // as ScanBuilder::last_rejection()
+  std::string two_senders;             // as ScanBuilder::two_senders()
   std::uint64_t foreign = 0;           // datagrams of the socket from unknown senders
   std::string last_foreign;            // "10.0.0.7:5000"
   std::uint64_t kernel_overflows = 0;  // of the socket
+  std::uint64_t filtered = 0;          // datagrams that a packet filter kept from the socket
 };
 
 class LidarWatch {
@@ -29,7 +31,8 @@ class LidarWatch {
   /// `expected_rpm`: what a rotor that makes one turn a frame does. `log` must outlive this object.
   LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& log, SteadyTime start);
 
-  /// Standing faults: lidar_silent, clock. Call it some times a second.
+  /// Standing faults: lidar_silent, clock, foreign_packets while nobody can say which of two sensors is
+  /// meant. Call it some times a second.
   Faults update(const LidarEvidence& evidence, SteadyTime now);
 
   [[nodiscard]] bool silent() const { return silent_; }
@@ -48,9 +51,10 @@ class LidarWatch {
   double expected_rpm_;
   SteadyTime start_;
   bool silent_ = false;
-  RecentGrowth foreign_grows_, rejected_grows_, held_back_grows_, overflow_grows_, mode_changes_;
+  RecentGrowth foreign_grows_, rejected_grows_, held_back_grows_, overflow_grows_, mode_changes_,
+      another_grows_, filtered_grows_;
   ConditionLog silence_log_, foreign_log_, rejected_log_, held_back_log_, overflow_log_, loss_log_, rate_log_,
-      mode_log_, sector_log_, clock_log_;
+      mode_log_, sector_log_, clock_log_, another_log_, filtered_log_;
 };
 
 }  // namespace hulltrack

@@ -91,6 +91,10 @@ void RxThread::receive(std::size_t socket) {
     const std::span<const Datagram> datagrams = value_or_throw(sockets_.sources[socket].receive());
     for (const Datagram& datagram : datagrams) {
       if (const auto lidar = router_.lidar_of(datagram)) {
+        if (!builder_.takes(*lidar, datagram)) {
+          exchange_.events.raise(fault::foreign_packets);
+          continue;
+        }
         if (builder_.add(*lidar, datagram).refused()) {
           exchange_.events.raise(fault::foreign_packets);
         }
@@ -108,19 +112,19 @@ void RxThread::receive(std::size_t socket) {
 void RxThread::tell_of_counters(std::size_t socket) {
   const UdpCounters& counters = sockets_.sources[socket].counters();
   SocketMemory& memory = memories_[socket];
-  if (counters.foreign > memory.foreign) {
+  if (counters.foreign > memory.foreign || counters.filtered > memory.filtered) {
     exchange_.events.raise(fault::foreign_packets);
   }
   if (counters.kernel_overflows > memory.kernel_overflows) {
     exchange_.events.raise(fault::frame_incomplete);
   }
-  memory = {counters.foreign, counters.kernel_overflows};
+  memory = {counters.foreign, counters.filtered, counters.kernel_overflows};
 }
 
 void RxThread::hand_over_scans() {
   while (builder_.take(exchange_.scans.writable())) {
     exchange_.scans.writable().last_received = last_received_;
-    if (exchange_.scans.publish()) {
+    if (exchange_.publish_scan()) {
       ++dropped_;
       exchange_.events.raise(fault::frame_dropped);
     }
@@ -148,8 +152,13 @@ void RxThread::look_at_lidars(SteadyTime now) {
 
 LidarEvidence RxThread::evidence(std::size_t lidar) const {
   const UdpSource& socket = sockets_.sources[sockets_.data_of[lidar]];
-  return {builder_.status(lidar), builder_.last_rejection(lidar), socket.counters().foreign,
-          socket.last_foreign(), socket.counters().kernel_overflows};
+  return {.status = builder_.status(lidar),
+          .last_rejection = builder_.last_rejection(lidar),
+          .two_senders = builder_.two_senders(lidar),
+          .foreign = socket.counters().foreign,
+          .last_foreign = socket.last_foreign(),
+          .kernel_overflows = socket.counters().kernel_overflows,
+          .filtered = socket.counters().filtered};
 }
 
 void RxThread::add_figures() {
@@ -158,7 +167,7 @@ void RxThread::add_figures() {
     const LidarStatus status = builder_.status(lidar);
     total.packets += status.packets;
     total.packets_lost += status.packets_lost;
-    total.packets_refused += status.packets_rejected;
+    total.packets_refused += status.packets_rejected + status.packets_of_another;
   }
   for (const UdpSource& socket : sockets_.sources) {
     total.packets_refused += socket.counters().foreign;

@@ -32,6 +32,7 @@ class RxThread {
   /// What of a socket's counters has been told.
   struct SocketMemory {
     std::uint64_t foreign = 0;
+    std::uint64_t filtered = 0;
     std::uint64_t kernel_overflows = 0;
   };
 

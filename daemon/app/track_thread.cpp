@@ -25,6 +25,7 @@ void TrackThread::run(std::stop_token stop) {
     pulse_.beat(steady_now());
     if (const Scan* scan = exchange_.scans.take()) {
       const JointHistory::Lookup lookup = await_joints(*scan, stop);
+      exchange_.awaiting_joints.store(false, std::memory_order_relaxed);
       // The scan under way when the PLC first answered is no fault: the service is still starting.
       if (sequence_ > 0 || lookup != JointHistory::Lookup::before_oldest) {
         process(*scan);
@@ -50,6 +51,7 @@ JointHistory::Lookup TrackThread::await_joints(const Scan& scan, const std::stop
     if (!may_come || now >= deadline || stop.stop_requested()) {
       return lookup;
     }
+    exchange_.awaiting_joints.store(true, std::memory_order_relaxed);
     exchange_.track_bell.wait_until(std::min(deadline, now + kLongestWait));
   }
 }
@@ -67,7 +69,8 @@ void TrackThread::process(const Scan& scan) {
     figures.hull = {done, report.track.motion, report.track.bend, report.track.sigma_bend};
   }
   exchange_.figures.add(figures);
-  exchange_.frame.put({++sequence_, std::move(report.track), scan.last_received, done});
+  exchange_.frame.put(
+      {++sequence_, std::move(report.track), scan.last_received, done, scan.first_firing, scan.last_firing});
   exchange_.plc_bell.ring();
 }
 
@@ -75,7 +78,7 @@ FrameInputs TrackThread::inputs() {
   const PlcView plc = exchange_.plc.get();
   const bool reacquire = plc.reacquire_edges != std::exchange(reacquire_edges_, plc.reacquire_edges);
   const auto standing = static_cast<Faults>(plc.standing | exchange_.lidars.get().standing);
-  return {.hold = plc.hold, .reacquire = reacquire, .standing = standing};
+  return {.hold = plc.hold, .reacquire = reacquire, .standing = standing, .joint_trouble = plc.joint_trouble};
 }
 
 }  // namespace hulltrack

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <thread>
 
 #include "daemon/app/guarded_thread.hpp"
@@ -75,6 +76,42 @@ TEST_F(TrackThreadTest, ANewerScanDoesNotMakeAnOlderOneGiveUpItsJoints) {
   const FrameDone second = next_frame();
   EXPECT_EQ(second.result.frame, 1U);
   EXPECT_EQ(second.result.faults & fault::plc_stale, 0);
+}
+
+TEST_F(TrackThreadTest, AScanReplacedWhileJointsAreAwaitedIsNotLate) {
+  sample(milliseconds(0));
+  scan(0, milliseconds(10), milliseconds(110));
+  ring();
+  ring();  // it has the scan, and waits for the sample behind it
+  const auto publish = [&] {
+    exchange.scans.writable().clear();
+    return exchange.publish_scan();
+  };
+  EXPECT_FALSE(publish());
+  EXPECT_FALSE(publish()) << "replaced, by no fault of the processing";
+  EXPECT_TRUE(exchange.awaiting_joints);
+  sample(milliseconds(120));
+  ring();
+  (void)next_frame();
+}
+
+TEST(Exchange, AScanReplacedWhileTrackIsBusyIsLate) {
+  const auto exchange = std::make_unique<Exchange>();
+  EXPECT_FALSE(exchange->publish_scan());
+  EXPECT_TRUE(exchange->publish_scan());
+}
+
+TEST_F(TrackThreadTest, AFrameOfJointsOnTrialSaysWhyItIsNotHealthy) {
+  exchange.plc.put({.standing = fault::plc_value, .joint_trouble = "travel waits"});
+  exchange.joints.push({start, {}, true});
+  scan(0, milliseconds(10), milliseconds(110));
+  exchange.joints.push({start + milliseconds(120), {}, true});
+  ring();
+  const FrameDone frame = next_frame();
+  EXPECT_FALSE(frame.result.health);
+  EXPECT_NE(frame.result.faults & fault::plc_value, 0);
+  EXPECT_EQ(frame.first_firing, start + milliseconds(10));
+  EXPECT_EQ(frame.last_firing, start + milliseconds(110));
 }
 
 TEST_F(TrackThreadTest, AGapInTheJointsIsToldAtOnce) {
