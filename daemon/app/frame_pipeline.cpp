@@ -48,7 +48,8 @@ JointGateConfig joint_gate_config(const PlcConfig& plc) {
           .slew = limits_in_radians(plc.read.slew),
           .luff = limits_in_radians(plc.read.luff),
           .poll_period = plc.poll_period,
-          .has_heartbeat = plc.heartbeat_timeout > Nanoseconds{0}};
+          .has_heartbeat = plc.heartbeat_timeout > Nanoseconds{0},
+          .has_command = plc.read.command >= 0};
 }
 
 Joints joints_from_plc(double travel_m, double slew_deg, double luff_deg) {

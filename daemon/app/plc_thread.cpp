@@ -47,8 +47,8 @@ void PlcThread::run(std::stop_token stop) {
     while (!stop.stop_requested()) {
       take_frame();
       if (const SteadyTime now = steady_now(); unwritten_ || now >= next_write) {
-        write(false);
-        next_write = now + write_gap;
+        // A PLC that is busy for a moment hears of us at the next poll, not a whole period later.
+        next_write = now + (write(false) ? write_gap : std::min(write_gap, config_.poll_period));
       }
       if (const SteadyTime now = steady_now(); now >= next_poll) {
         poll();
@@ -87,8 +87,8 @@ void PlcThread::take_reading(const PlcPoll& answer) {
   if (reading.torn) {
     return;
   }
-  const JointSample sample{live_measurement_time(answer.stamp() - config_.latency),
-                           joints_from_plc(reading.travel_m, reading.slew_deg, reading.luff_deg)};
+  JointSample sample{live_measurement_time(answer.stamp() - config_.latency),
+                     joints_from_plc(reading.travel_m, reading.slew_deg, reading.luff_deg)};
   const JointGate::Outcome outcome =
       take_plc_reading({sample, reading.heartbeat}, reading.command, command_, gate_);
   if (outcome.verdict == JointGate::Verdict::no_news) {
@@ -98,8 +98,10 @@ void PlcThread::take_reading(const PlcPoll& answer) {
     ++view_.reacquire_edges;
   }
   watch_.judged(outcome, answer.answered);
+  view_.joint_trouble = outcome.reason;
   publish_view(answer.answered);  // before the sample: a frame must not be judged by an older view
-  if (outcome.verdict == JointGate::Verdict::believed) {
+  sample.on_trial = outcome.verdict == JointGate::Verdict::on_trial;
+  if (outcome.verdict != JointGate::Verdict::refused) {
     exchange_.joints.push(sample);
     exchange_.track_bell.ring();
   }
@@ -112,6 +114,7 @@ void PlcThread::take_frame() {
   }
   frame_sequence_ = frame.sequence;
   reason_ = frame.result.reason;
+  gate_.frame_done(frame.first_firing, frame.last_firing, frame.result.joints_confirmed);
   publication_.frame(frame.result, steady_now(), frame.done - frame.last_received);
   unwritten_ = std::move(frame);
 }
@@ -132,7 +135,7 @@ void PlcThread::publish_view(SteadyTime now) {
   exchange_.plc.put(view_);
 }
 
-void PlcThread::write(bool stopped) {
+bool PlcThread::write(bool stopped) {
   const SteadyTime now = steady_now();
   Faults events = exchange_.events.collect();
   if (watch_.link_was_lost()) {
@@ -155,6 +158,7 @@ void PlcThread::write(bool stopped) {
     exchange_.figures.add(healthy);
   }
   unwritten_.reset();
+  return written.exception != kExceptionBusy;
 }
 
 void PlcThread::note_write(const PlcWrite& written) {

@@ -52,7 +52,8 @@ class PlcThread {
   void poll();
   void take_reading(const PlcPoll& poll);
   void take_frame();
-  void write(bool stopped);
+  /// False: the PLC was busy.
+  bool write(bool stopped);
   [[nodiscard]] PublicationContext context(bool stopped, SteadyTime now) const;
   void publish_view(SteadyTime now);
   void note_write(const PlcWrite& written);

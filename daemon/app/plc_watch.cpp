@@ -25,6 +25,7 @@ PlcWatch::PlcWatch(const PlcConfig& config, LogSink& log, SteadyTime start)
       write_log_(log, LogLevel::error),
       stale_log_(log),
       value_log_(log),
+      wait_log_(log),
       overwritten_log_(log, LogLevel::error) {}
 
 void PlcWatch::update_link(LinkOutcome outcome, const std::string& message, SteadyTime now) {
@@ -51,8 +52,10 @@ void PlcWatch::update_link(LinkOutcome outcome, const std::string& message, Stea
 void PlcWatch::polled(const PlcPoll& poll, SteadyTime now) {
   update_link(poll.outcome, poll.message, now);
   if (poll.outcome != LinkOutcome::waiting) {
+    const bool refused = poll.outcome == LinkOutcome::exception;
+    refusal_ = refused ? poll.message : std::string{};
     read_log_.update(
-        poll.outcome == LinkOutcome::exception, now,
+        refused && poll.exception != kExceptionBusy, now,
         [&] {
           return format_text("%s refuses to be read, so no scan has joints: %s", name_.c_str(),
                              poll.message.c_str());
@@ -66,14 +69,27 @@ void PlcWatch::polled(const PlcPoll& poll, SteadyTime now) {
 
 void PlcWatch::judged(const JointGate::Outcome& outcome, SteadyTime now) {
   value_fault_ = outcome.faults;
+  const bool refused = outcome.verdict == JointGate::Verdict::refused;
   value_log_.update(
-      value_fault_ != 0, now,
+      value_fault_ != 0 && (refused || value_log_.active()), now,
       [&] {
         return format_text("%s: joint value refused, scans are not registered with it: %s", name_.c_str(),
                            outcome.reason.c_str());
       },
       [&](Nanoseconds lasted) {
         return format_text("%s: joint values are good again after %.1f s", name_.c_str(), to_seconds(lasted));
+      });
+  wait_log_.update(
+      outcome.needs_edge, now,
+      [&] {
+        return format_text(
+            "%s: %s. Health is 0 until then: check that travel, slew and luff are right, then %s",
+            name_.c_str(), outcome.reason.c_str(),
+            config_.read.command >= 0 ? "set command bit 1 until the echo shows it" : "restart the service");
+      },
+      [&](Nanoseconds lasted) {
+        return format_text("%s: joint values are believed again after a wait of %.1f s", name_.c_str(),
+                           to_seconds(lasted));
       });
 }
 
@@ -103,10 +119,11 @@ Faults PlcWatch::standing(SteadyTime now) {
   stale_log_.update(
       stale, now,
       [&] {
-        return format_text(
-            "%s: no new joint values for %.1f s, so no new pose; %s", name_.c_str(),
-            to_seconds(now - last_news_),
-            link_up_ ? "its heartbeat does not move: is its program running?" : "the link is down");
+        return format_text("%s: no new joint values for %.1f s, so no new pose; %s", name_.c_str(),
+                           to_seconds(now - last_news_),
+                           !link_up_          ? "the link is down"
+                           : refusal_.empty() ? "its heartbeat does not move: is its program running?"
+                                              : refusal_.c_str());
       },
       [&](Nanoseconds) { return name_ + ": new joint values again"; });
   return static_cast<Faults>(value_fault_ | (stale ? fault::plc_stale : 0));

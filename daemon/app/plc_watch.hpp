@@ -39,7 +39,8 @@ class PlcWatch {
   bool link_was_lost_ = false;
   bool link_up_ = false;
   std::string link_message_;
-  ConditionLog link_log_, read_log_, write_log_, stale_log_, value_log_, overwritten_log_;
+  std::string refusal_;  // what the newest poll was answered with, if it was an exception
+  ConditionLog link_log_, read_log_, write_log_, stale_log_, value_log_, wait_log_, overwritten_log_;
 };
 
 }  // namespace hulltrack

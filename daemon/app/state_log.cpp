@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<std::pair<Faults, const char*>, 16> kFaultWords{{
     {fault::plc_link_lost, "PLC link was lost"},
     {fault::plc_stale, "PLC data stale"},
-    {fault::plc_value, "a joint value refused"},
+    {fault::plc_value, "joint values not believed"},
     {fault::lidar_silent, "a LiDAR silent"},
     {fault::foreign_packets, "malformed or foreign packets"},
     {fault::frame_incomplete, "packets lost"},
@@ -27,7 +27,12 @@ constexpr std::array<std::pair<Faults, const char*>, 16> kFaultWords{{
 }};
 
 /// What the state means for the loader and what to do about it.
-const char* consequence(State state) {
+const char* consequence(State state, Faults faults) {
+  const bool pose_is_judged = state == State::degraded || state == State::lost || state == State::acquiring;
+  if (pose_is_judged && (faults & fault::plc_value) != 0) {
+    return "The PLC sees health 0 for as long as its joint values are not believed, the line about the PLC "
+           "says what to do";
+  }
   switch (state) {
     case State::starting:
       return "The PLC sees health 0 until the first whole scan has come";
@@ -114,7 +119,7 @@ void StateLog::announce(const WriteBlock& registers, const std::string& reason, 
       line += "; " + part;
     }
   }
-  sink_.write(level_of(registers.state), line + ". " + consequence(registers.state));
+  sink_.write(level_of(registers.state), line + ". " + consequence(registers.state, registers.faults));
   told_ = registers.state;
   told_since_ = current_since_;
   unannounced_ = 0;

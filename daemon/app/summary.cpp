@@ -28,7 +28,9 @@ std::string plc_words(const WriteBlock& registers, const Figures& figures) {
     return "PLC down";
   }
   const bool stale = (registers.faults & fault::plc_stale) != 0;
-  return format_text("PLC %.1f ms%s%s", figures.round_trip_ms.mean(), stale ? " but its data stale" : "",
+  const bool doubtful = (registers.faults & fault::plc_value) != 0;
+  return format_text("PLC %.1f ms%s%s%s", figures.round_trip_ms.mean(), stale ? " but its data stale" : "",
+                     doubtful ? " but its joint values not believed" : "",
                      figures.writes_failed > 0 ? " but writes fail" : "");
 }
 

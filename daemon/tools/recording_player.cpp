@@ -75,6 +75,12 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
   inputs_.hold = latch_.hold();
   inputs_.reacquire = latch_.take_reacquire();
   inputs_.standing = value_fault_;
+  first_firing_ = scan.first_firing;
+  last_firing_ = scan.last_firing;
+  if (value_fault_ != 0) {
+    ++doubtful_;
+    last_doubt_ = inputs_.joint_trouble;
+  }
   inputs_.standing |= frozen ? fault::plc_stale : Faults{0};
   inputs_.standing |= look_at_lidars(scan.end);
   return true;
@@ -111,7 +117,9 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
           return Error{explain_no_joints()};
         }
       }
-      builder_.add(*lidar, datagram);
+      if (builder_.takes(*lidar, datagram)) {
+        builder_.add(*lidar, datagram);
+      }
     }
   }
   return true;
@@ -129,6 +137,7 @@ Faults RecordingPlayer::look_at_lidars(MeasurementTime now) {
     if (status.clock_fault) trouble_[i].last_clock = status.clock;
     standing |= silent ? fault::lidar_silent : Faults{0};
     standing |= status.clock_fault ? fault::clock : Faults{0};
+    standing |= status.disputed ? fault::foreign_packets : Faults{0};
   }
   return standing;
 }
@@ -138,6 +147,10 @@ std::string RecordingPlayer::explain_lidars() const {
   for (std::size_t i = 0; i < lidars_.size(); ++i) {
     const Trouble& trouble = trouble_[i];
     const char* name = lidars_[i].name.c_str();
+    if (const std::string two = builder_.two_senders(i); !two.empty()) {
+      text +=
+          format_text("senders     LiDAR %s: %s; set `source` to the one that is meant\n", name, two.c_str());
+    }
     if (trouble.silent > 0) {
       text += format_text("silent      LiDAR %s for longer than %lld ms in %s\n", name,
                           static_cast<long long>(lidars_[i].timeout / std::chrono::milliseconds(1)),
@@ -205,17 +218,28 @@ void RecordingPlayer::play_plc_until(MeasurementTime last_firing) {
 
 void RecordingPlayer::play_row(const PlcCsvRow& row) {
   const MeasurementTime presented = measurement_time_from_ns(row.t_ns);
-  const JointSample sample{presented - plc_.latency,
-                           joints_from_plc(row.d_x, row.theta_r_deg, row.theta_p_deg)};
+  JointSample sample{presented - plc_.latency, joints_from_plc(row.d_x, row.theta_r_deg, row.theta_p_deg)};
   const JointGate::Outcome outcome =
       take_plc_reading({sample, static_cast<std::uint16_t>(row.heartbeat)}, row.command, latch_, gate_);
   value_fault_ = outcome.faults;
+  inputs_.joint_trouble = outcome.reason;
   if (outcome.verdict != JointGate::Verdict::no_news) {
     last_news_ = presented;
   }
-  if (outcome.verdict == JointGate::Verdict::believed) {
+  sample.on_trial = outcome.verdict == JointGate::Verdict::on_trial;
+  if (outcome.verdict == JointGate::Verdict::believed || sample.on_trial) {
     joints_.add(sample);
   }
+}
+
+void RecordingPlayer::judged(const TrackResult& result) {
+  gate_.frame_done(first_firing_, last_firing_, result.joints_confirmed);
+}
+
+std::string RecordingPlayer::explain_joints() const {
+  return doubtful_ == 0 ? std::string{}
+                        : format_text("joints      not believed in %s: %s\n",
+                                      counted(doubtful_, "frame").c_str(), last_doubt_.c_str());
 }
 
 double RecordingPlayer::share() const {

@@ -39,8 +39,15 @@ class RecordingPlayer {
   [[nodiscard]] const JointHistory& joints() const { return joints_; }
   [[nodiscard]] const FrameInputs& inputs() const { return inputs_; }
 
-  /// Which LiDARs fell silent or had a clock that was not believed in the frames so far, a line each for the
-  /// terminal; empty if none did.
+  /// What the tracker made of the frame that next() gave last.
+  void judged(const TrackResult& result);
+
+  /// In how many frames joint values were not believed and why at last, a line for the terminal; empty if in
+  /// none.
+  [[nodiscard]] std::string explain_joints() const;
+
+  /// Which LiDARs fell silent, had a clock that was not believed or company on their port in the frames so
+  /// far, a line each for the terminal; empty if none did.
   [[nodiscard]] std::string explain_lidars() const;
 
   /// How much of the recording's time has been played, 0..1.
@@ -85,6 +92,9 @@ class RecordingPlayer {
   JointHistory joints_;
   FrameInputs inputs_;
   Faults value_fault_ = 0;
+  std::uint64_t doubtful_ = 0;  // frames in which joint values were not believed
+  std::string last_doubt_;
+  MeasurementTime first_firing_{}, last_firing_{};  // of the frame that next() gave last
   MeasurementTime last_news_{};
   MeasurementTime played_{};
 };

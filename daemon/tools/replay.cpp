@@ -145,6 +145,7 @@ void replay(const ReplayOptions& options) {
         break;
       }
       const FrameReport report = pipeline.process(scan, player->joints(), player->inputs());
+      player->judged(report.track);
       const double ms = to_milliseconds(report.processing);
       summary.add(report.track, ms);
       if (csv) {
@@ -157,7 +158,9 @@ void replay(const ReplayOptions& options) {
     must(csv->close());
   }
   if (!options.quiet && !summary.empty()) {
-    std::fputs((summary.text(!options.no_timing) + player->explain_lidars()).c_str(), stderr);
+    std::fputs(
+        (summary.text(!options.no_timing) + player->explain_joints() + player->explain_lidars()).c_str(),
+        stderr);
   }
   if (!broken_off.empty()) {
     throw ToolError(broken_off);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <functional>
+#include <thread>
+
 #include "daemon/app/guarded_thread.hpp"
 #include "daemon/app/live_time.hpp"
 #include "tests/integration/service/loader_bench.hpp"
@@ -79,6 +83,58 @@ TEST_F(RunningPlcThreadTest, EventsStandInTheRegisters) {
   EXPECT_TRUE(plc.wait_for([](const WriteBlock& block) {
     return (block.faults & fault::frame_dropped) != 0 && (block.faults & fault::foreign_packets) != 0;
   }));
+}
+
+TEST_F(PlcThreadTest, AWriteThatMeetsABusyPlcIsTriedAgainAtTheNextPoll) {
+  Config seldom = config;
+  seldom.plc.write_period = std::chrono::hours(1);
+  plc.server().set_fault(sim::PlcFault::busy, 4);  // two polls and the writes behind them
+  PlcThread slow{seldom, exchange, pulse, log, {}};
+  GuardedThread runner(
+      "plc", [&](std::stop_token stop) { slow.run(stop); },
+      [](const std::string&, const std::string& what) { ADD_FAILURE() << what; },
+      [this] { exchange.plc_bell.ring(); });
+  EXPECT_TRUE(plc.wait_for([](const WriteBlock&) { return true; }, 0)) << "not before the next period";
+}
+
+TEST_F(PlcThreadTest, AJumpOfAJointStandsInTheRegistersAndWaitsForAnEdge) {
+  // What the server's owner sets in between is gone at the next cycle of CyclingPlc, so this one cycles
+  // itself.
+  sim::PlcServer server{{}};
+  Config jumpy = config;
+  jumpy.plc.port = server.port();
+  std::atomic<double> travel = 0.0;
+  std::jthread cycle([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      server.set_joints(travel, 0.0, 0.0);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  });
+  PlcThread other{jumpy, exchange, pulse, log, {}};
+  GuardedThread runner(
+      "plc", [&](std::stop_token stop) { other.run(stop); },
+      [](const std::string&, const std::string& what) { ADD_FAILURE() << what; },
+      [this] { exchange.plc_bell.ring(); });
+  const auto wait_until = [&](const std::function<bool(const PlcView&)>& law) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!law(exchange.plc.get()) && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    return law(exchange.plc.get());
+  };
+  JointHistory joints;
+  const auto believed = [&](const PlcView& view) {
+    exchange.joints.drain_into(joints);
+    return view.standing == 0 && joints.size() > 0 && joints.newest()->joints.d_x == travel;
+  };
+  ASSERT_TRUE(wait_until(believed));
+  travel = 3.0;
+  ASSERT_TRUE(wait_until([](const PlcView& view) {
+    return view.joint_trouble.find("wait for a re-acquire") != std::string::npos;
+  }));
+  EXPECT_NE(exchange.plc.get().standing & fault::plc_value, 0);
+  server.set_command(kCommandReacquire);
+  ASSERT_TRUE(wait_until(believed));
+  exchange.joints.drain_into(joints);
+  EXPECT_FALSE(joints.newest()->on_trial);
 }
 
 TEST_F(PlcThreadTest, AnEscapingExceptionLeavesHealthZeroAndStateStopped) {

@@ -24,6 +24,15 @@ WriteBlock block_of(State state, Faults faults = 0) {
   return block;
 }
 
+TEST(StateLog, WhatWaitsForAPersonDoesNotPromiseToReturnByItself) {
+  RecordingLog log;
+  StateLog states(log);
+  states.update(block_of(State::degraded, fault::plc_value), "joint values wait for a re-acquire edge", {});
+  EXPECT_THAT(log.last(), HasSubstr("joint values not believed; joint values wait for a re-acquire edge"));
+  EXPECT_THAT(log.last(), HasSubstr("for as long as its joint values are not believed"));
+  EXPECT_THAT(log.last(), Not(HasSubstr("returns by itself")));
+}
+
 TEST(StateLog, OneLineAChangeWithReasonAndFigures) {
   RecordingLog log;
   StateLog states(log);

@@ -45,6 +45,13 @@ TEST(Summary, StatusLineNamesWhatIsMissing) {
   EXPECT_EQ(status_line(block, {}, seconds(1)), "fault 0.0 Hz, no Q1, PLC down, loss 0.0 %, LiDAR silent");
 }
 
+TEST(Summary, StatusLineTellsThatJointValuesAreNotBelieved) {
+  WriteBlock block = tracking();
+  block.faults = fault::plc_value;
+  EXPECT_THAT(status_line(block, one_good_second(), seconds(1)),
+              HasSubstr("PLC 2.1 ms but its joint values not believed"));
+}
+
 TEST(Summary, StatusLineTellsThatThePlcRefusesOurRegisters) {
   Figures figures = one_good_second();
   figures.writes_failed = 10;

@@ -64,6 +64,31 @@ TEST_F(LidarWatchTest, NamesTheForeignSender) {
   EXPECT_THAT(log.last(), HasSubstr("37 so far"));
 }
 
+TEST_F(LidarWatchTest, NamesTwoSensorsOnOnePortAndLetsNobodySteerWhileItIsOpenWhichIsMeant) {
+  packet(seconds(1));
+  evidence.two_senders = "two sensors send to UDP port 2368: 192.168.1.201 and 192.168.1.202";
+  evidence.status.packets_of_another = 3;
+  evidence.status.disputed = true;
+  EXPECT_EQ(look(seconds(1)), fault::foreign_packets);
+  ASSERT_EQ(log.lines.size(), 1U);
+  EXPECT_THAT(log.last(),
+              HasSubstr("192.168.1.201 and 192.168.1.202; set `source` to the one that is meant"));
+  EXPECT_THAT(log.last(), HasSubstr("health is 0"));
+  evidence.status.disputed = false;
+  packet(milliseconds(1100));
+  EXPECT_EQ(look(milliseconds(1100)), 0);
+  EXPECT_EQ(log.lines.size(), 1U) << "once";
+}
+
+TEST_F(LidarWatchTest, WhatAPacketFilterDropsIsNoOverload) {
+  packet(seconds(1));
+  evidence.filtered = 12;
+  EXPECT_EQ(look(seconds(1)), 0);
+  ASSERT_EQ(log.lines.size(), 1U);
+  EXPECT_THAT(log.last(), HasSubstr("has kept 12 datagrams from UDP port 2368"));
+  EXPECT_THAT(log.last(), HasSubstr("IPAddressAllow="));
+}
+
 TEST_F(LidarWatchTest, NamesWhatWasExpectedAndSeenFromAnotherModel) {
   evidence.status.packets_rejected = 5;
   evidence.last_rejection = "product 0x28 (VLP-32C) instead of 0x22";
@@ -209,6 +234,42 @@ TEST_F(PlcWatchTest, ARefusedValueStandsAsLongAsTheGateSaysSo) {
   EXPECT_THAT(log.last(), HasSubstr("luff 97.0 deg"));
   watch.judged({JointGate::Verdict::believed, 0, ""}, kStart + milliseconds(20));
   EXPECT_EQ(standing(milliseconds(21)), 0);
+}
+
+TEST_F(PlcWatchTest, ValuesThatWaitForAPersonSaySoOnceAndWhatToDo) {
+  poll(LinkOutcome::ok, milliseconds(0));
+  const JointGate::Outcome trial{JointGate::Verdict::on_trial, fault::plc_value, "on trial", false};
+  watch.judged(trial, kStart);
+  EXPECT_EQ(standing(milliseconds(1)), fault::plc_value);
+  EXPECT_TRUE(log.lines.empty()) << "half a second after any gap";
+  const JointGate::Outcome wait{JointGate::Verdict::on_trial, fault::plc_value,
+                                "joint values wait for a re-acquire edge", true};
+  watch.judged(wait, kStart + seconds(1));
+  watch.judged(wait, kStart + seconds(2));
+  ASSERT_EQ(log.lines.size(), 1U);
+  EXPECT_THAT(log.last(), HasSubstr("joint values wait for a re-acquire edge"));
+  EXPECT_THAT(log.last(), HasSubstr("check that travel, slew and luff are right, then set command bit 1"));
+  watch.judged({JointGate::Verdict::believed, 0, "", false}, kStart + seconds(31));
+  EXPECT_THAT(log.last(), HasSubstr("believed again after a wait of 30.0 s"));
+}
+
+TEST_F(PlcWatchTest, WithoutACommandWordARestartIsTheRemedy) {
+  PlcConfig mute = plc(milliseconds(500));
+  mute.read.command = -1;
+  PlcWatch bare(mute, log, kStart);
+  bare.judged({JointGate::Verdict::on_trial, fault::plc_value, "wait", true}, kStart);
+  EXPECT_THAT(log.last(), HasSubstr("then restart the service"));
+}
+
+TEST_F(PlcWatchTest, ABusyPlcRefusesNothing) {
+  PlcPoll answer;
+  answer.outcome = LinkOutcome::exception;
+  answer.exception = kExceptionBusy;
+  answer.message = "reading holding registers 0 to 7 (plc.read): exception 06, busy";
+  watch.polled(answer, kStart);
+  EXPECT_TRUE(log.lines.empty());
+  EXPECT_EQ(standing(milliseconds(501)), fault::plc_stale);
+  EXPECT_THAT(log.last(), HasSubstr("no new pose; reading holding registers 0 to 7"));
 }
 
 TEST_F(PlcWatchTest, AForeignHandInOurRegistersIsTold) {
