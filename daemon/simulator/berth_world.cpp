@@ -6,15 +6,21 @@
 namespace hulltrack {
 namespace {
 
+TriangleMesh berth_today(std::uint64_t seed) {
+  TriangleMesh mesh = berth_mesh();
+  append(mesh, parked_now(seed), Pose::Identity());
+  return mesh;
+}
+
 Eigen::Matrix<float, 3, 4> as_affine(const Pose& T) { return T.matrix().topRows<3>().cast<float>(); }
 
 }  // namespace
 
 BerthWorld::BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const ShapeChange& change,
                        const LoaderMotion& loader, const HullMotion& hull,
-                       const std::optional<Passage>& crane)
+                       const std::optional<Passage>& crane, std::uint64_t seed)
     : boom_(boom_mesh()),
-      berth_(berth_mesh()),
+      berth_(berth_today(seed)),
       portal_(portal_mesh()),
       water_(water_mesh()),
       passage_(crane.value_or(Passage{})),
@@ -23,6 +29,10 @@ BerthWorld::BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const Sha
       hull_(&hull) {
   for (const TriangleMesh& mesh : hull_meshes_H) hulls_.emplace_back(mesh);
   if (crane) crane_.emplace(crane_mesh());
+  for (const Mover& mover : movers(seed)) {
+    movers_.emplace_back(mover.mesh);
+    walks_.push_back(mover.walk);
+  }
 }
 
 BerthWorld::Placement BerthWorld::placement(const Pose& mount, double t) const {
@@ -38,6 +48,8 @@ BerthWorld::Placement BerthWorld::placement(const Pose& mount, double t) const {
   L_from[kPortal] = as_affine(T_G_L);
   L_from[kWater] = as_affine(T_water_L);
   L_from[kCrane] = as_affine(Eigen::Translation3d(-driven, 0.0, 0.0) * T_W_L);
+  for (std::size_t i = 0; i < walks_.size(); ++i)
+    L_from[kFirstMover + i] = as_affine(walks_[i].T_W_own(t).inverse() * T_W_L);
   return L_from;
 }
 
@@ -68,8 +80,10 @@ const RayScene* BerthWorld::scene(std::size_t body, std::size_t shape) const {
       return &portal_;
     case kWater:
       return &water_;
-    default:
+    case kCrane:
       return crane_ ? &*crane_ : nullptr;
+    default:
+      return &movers_[body - kFirstMover];
   }
 }
 

@@ -1,6 +1,6 @@
 // What does a ray leaving a LiDAR at time t meet? The berth with bodies that move on their own: berth in W,
-// water in W at the tide's level, hull in H, portal in G, boom in B, a crane that drives past - each where it
-// is at that very moment, the hull in the shape that it has by then.
+// water in W at the tide's level, hull in H, portal in G, boom in B, a crane that drives past, the traffic on
+// the quay - each where it is at that very moment, the hull in the shape that it has by then.
 //
 // Rays are given in L. Within a `Sweep` (one datagram, about a millisecond) the bodies' poses are
 // interpolated between its ends, which is exact to well below a micrometre. Metres, seconds from the first
@@ -16,6 +16,7 @@
 #include "daemon/simulator/hull_motion.hpp"
 #include "daemon/simulator/hull_shape.hpp"
 #include "daemon/simulator/loader_motion.hpp"
+#include "daemon/simulator/quay_traffic.hpp"
 #include "daemon/simulator/ray_scene.hpp"
 
 namespace hulltrack {
@@ -30,15 +31,16 @@ class BerthWorld {
  public:
   /// L seen from each body at the beginning and the end of a short span of time.
   struct Sweep {
-    static constexpr std::size_t kBodies = 6;
+    static constexpr std::size_t kBodies = 6 + kMovers;
     double begin, end;  // s
     std::array<Eigen::Matrix<float, 3, 4>, kBodies> at_begin, at_end;
   };
 
   /// `hull_meshes_H`: one for each of the shapes of `change`, in the ship's place of when the map was made.
-  /// Motions and change must outlive the world.
+  /// `seed`: of the traffic on the quay. Motions and change must outlive the world.
   BerthWorld(const std::vector<TriangleMesh>& hull_meshes_H, const ShapeChange& change,
-             const LoaderMotion& loader, const HullMotion& hull, const std::optional<Passage>& crane);
+             const LoaderMotion& loader, const HullMotion& hull, const std::optional<Passage>& crane,
+             std::uint64_t seed);
 
   /// Of a LiDAR with T_lidar = `mount`.
   [[nodiscard]] Sweep sweep(const Pose& mount, double begin, double end) const;
@@ -54,7 +56,7 @@ class BerthWorld {
  private:
   using Affine = Eigen::Matrix<float, 3, 4>;
   using Placement = std::array<Affine, Sweep::kBodies>;
-  enum Body : std::size_t { kBoom, kHull, kBerth, kPortal, kWater, kCrane };
+  enum Body : std::size_t { kBoom, kHull, kBerth, kPortal, kWater, kCrane, kFirstMover };
 
   [[nodiscard]] static Affine between(const Sweep& sweep, double t, std::size_t body);
   [[nodiscard]] Placement placement(const Pose& mount, double t) const;
@@ -65,6 +67,8 @@ class BerthWorld {
   RayScene boom_, berth_, portal_, water_;
   std::vector<RayScene> hulls_;  // one a shape
   std::optional<RayScene> crane_;
+  std::vector<RayScene> movers_;
+  std::vector<Walk> walks_;
   Passage passage_;
   const ShapeChange* change_;
   const LoaderMotion* loader_;

@@ -5,6 +5,7 @@
 
 #include "daemon/simulator/berth_mesh.hpp"
 #include "daemon/simulator/loader_machine.hpp"
+#include "daemon/simulator/quay_traffic.hpp"
 #include "daemon/simulator/ship_mesh.hpp"
 #include "daemon/simulator/survey.hpp"
 #include "lidar_drivers/sim/encoder_registry.hpp"
@@ -119,7 +120,7 @@ SimulatedBerth::SimulatedBerth(const SimulationOptions& options, const Scenario&
       plc_(loader_, options.encoders, options.seed, scenario.gateway),
       dust_(scenario.dust, loader_, options.seed),
       world_(std::make_unique<BerthWorld>(shaped_meshes_H(scenario.ship_at_berth, change_), change_, loader_,
-                                          hull_, scenario.crane)) {
+                                          hull_, scenario.crane, options.seed)) {
   static const WindowCover open;
   for (std::size_t i = 0; i < encoders.size(); ++i) {
     const WindowCover& cover = i == 0 ? scenario.cover : open;
@@ -187,7 +188,9 @@ std::vector<Point> survey_stations() {
 Cloud SimulatedBerth::map() const { return survey(map_mesh_H(), survey_stations(), options_.seed); }
 
 Cloud SimulatedBerth::quay_map() const {
-  Cloud map = survey(berth_mesh(), survey_stations(), options_.seed, kQuayVoxel);
+  TriangleMesh then = berth_mesh();
+  append(then, parked_at_survey(options_.seed), Pose::Identity());
+  Cloud map = survey(then, survey_stations(), options_.seed, kQuayVoxel);
   constexpr float kSplash = 0.3F;  // m: the quay's wall is wet up to here
   std::erase_if(map, [](const Point& p) { return p.z() < kWaterLevel + kSplash; });
   return map;

@@ -82,7 +82,7 @@ class SimulatedBerth {
   [[nodiscard]] TriangleMesh map_mesh_H() const;
   [[nodiscard]] TriangleMesh hull_mesh_H(Nanoseconds time = Nanoseconds{0}) const;
   [[nodiscard]] Cloud map() const;
-  /// What is built at the berth, in W, surveyed while no ship lay there.
+  /// What is built at the berth, and what was parked there, in W, surveyed while no ship lay there.
   [[nodiscard]] Cloud quay_map() const;
 
   /// What a commissioning engineer would have put into the configuration: names and files that differ.
