@@ -100,16 +100,13 @@ void put_hull(std::string& text, const HullConfig& hull) {
   text += "\n";
 }
 
-/// Section [quay], behind a # on every line as long as the reader does not know it.
 void put_quay(std::string& text, bool with_map) {
-  constexpr const char* kBefore = "# ";
   const auto slope_deg = [](float slope) { return degrees(std::atan(static_cast<double>(slope))); };
-  put(text, "%s[quay]   # what stands still: z = height + tan(slope[0]) * x + tan(slope[1]) * y is its top\n",
-      kBefore);
-  put(text, "%sheight = %.3f\n", kBefore, static_cast<double>(kQuayHeight));
-  put(text, "%sslope = [%.3f, %.3f]   # deg; falls 1 %% from the edge to the gutter 28 m behind it\n",
-      kBefore, slope_deg(kQuaySlopeX), slope_deg(kQuaySlopeY));
-  if (with_map) put(text, "%smap = \"quay.pcd\"\n", kBefore);
+  text += "[quay]   # what stands still: z = height + tan(slope[0]) * x + tan(slope[1]) * y is its top\n";
+  put(text, "height = %.3f\n", static_cast<double>(kQuayHeight));
+  put(text, "slope = [%.3f, %.3f]   # deg; falls 1 %% from the edge to the gutter 28 m behind it\n",
+      slope_deg(kQuaySlopeX), slope_deg(kQuaySlopeY));
+  if (with_map) text += "map = \"quay.pcd\"\n";
 }
 
 }  // namespace
