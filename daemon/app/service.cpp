@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdlib>
 #include <exception>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "core/base/text.hpp"
@@ -53,8 +55,15 @@ void Service::read_files(bool beside_session) {
 }
 
 void Service::start_session(const Prepared& prepared) {
-  if (!prepared.map_remark.empty()) {
-    log_.write(LogLevel::warning, prepared.map_remark);
+  std::istringstream remarks(prepared.map_remark);
+  for (std::string line; std::getline(remarks, line);) {
+    log_.write(LogLevel::warning, line);
+  }
+  const QuayConfig& quay = prepared.config.tracker.quay;
+  if (prepared.quay == nullptr && !(quay.height && quay.slope)) {
+    log_.write(LogLevel::notice,
+               "no quay witness: only wrong signs and gross errors of travel, slew, luff and mount show. Set "
+               "quay.map, or quay.height and quay.slope, see hulltrackd.toml(5)");
   }
   session_ = std::make_unique<Session>(prepared, log_, on_failure(), registers_);
 }
