@@ -120,8 +120,8 @@ class FileReader {
     }
     remark(remark_on_dropped(config.map_file, *map));
     begins_(PreparationStep::map_making, 0);
-    const HullMap made(map->cloud);
-    files_.map_H = std::move(map->cloud);
+    const HullMap made(std::move(map->cloud));
+    files_.map_H = made.cloud_H();
   }
 
   void read_quay(const Config& config) {
