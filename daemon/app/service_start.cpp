@@ -94,6 +94,8 @@ std::optional<int> Service::turn_without_session() {
   if (!stand_in_ || stand_in_->watch().overdue(now).empty()) {
     notifier_.starting(now);
   }
+  notifier_.status(waiting_ ? "waits after failures in a row, the log says for how long; health 0"
+                            : "starts: files are being read; health 0");
   return std::nullopt;
 }
 

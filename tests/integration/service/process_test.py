@@ -235,7 +235,8 @@ class ServiceTest(unittest.TestCase):
         self.assertEqual({(record["health"], record["state"]) for record in plc.writes()}, {(0, 0)})
         self.assert_unbroken_heartbeat(plc)
         self.assertFalse(any("READY" in notice for notice in list(service.notices.queue)))
-        self.assertTrue(any("EXTEND_TIMEOUT_USEC" in notice for notice in list(service.notices.queue)))
+        for told in ("EXTEND_TIMEOUT_USEC", "STATUS=starts"):
+            self.assertTrue(any(told in notice for notice in list(service.notices.queue)), told)
 
     def test_the_first_session_goes_on_with_the_heartbeat_of_the_start(self):
         plc, _ = self.start_all()
@@ -326,6 +327,7 @@ class ServiceTest(unittest.TestCase):
         plc.wait_for(lambda record: record["heartbeat"] >= 10, "with the tenth heartbeat")
         self.assertEqual({(record["health"], record["state"]) for record in plc.writes()}, {(0, 5)})
         self.assertFalse(any("READY" in notice for notice in list(service.notices.queue)))
+        service.wait_for_notice(lambda notice: notice.startswith("STATUS=waits"), "with the status")
         service.signal(signal.SIGHUP)
         service.wait_ready()
         plc.wait_for(lambda record: record["state"] == 0, "of a service that starts")
