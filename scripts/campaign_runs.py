@@ -71,12 +71,14 @@ class Progress:
     def __init__(self, frames):
         self.frames, self.done, self.started = frames, 0, time.monotonic()
         self.over = sys.stderr.isatty()
+        self.lock = threading.Lock()
 
     def add(self, frames, what):
-        self.done += frames
-        left = (time.monotonic() - self.started) * (self.frames - self.done) / self.done
-        line = f"{100 * self.done // self.frames} % of {self.frames} frames, {left / 60:.0f} min to go; {what}"
-        print(f"\r\033[K{line}" if self.over else line, end="" if self.over else "\n", file=sys.stderr, flush=True)
+        with self.lock:
+            self.done += frames
+            left = (time.monotonic() - self.started) * (self.frames - self.done) / self.done
+            line = f"{100 * self.done // self.frames} % of {self.frames} frames, {left / 60:.0f} min to go; {what}"
+            print(f"\r\033[K{line}" if self.over else line, end="" if self.over else "\n", file=sys.stderr, flush=True)
 
     def end(self):
         if self.over:
@@ -103,40 +105,54 @@ def recording(runner, core, folder, scenario, seed, options):
         raise
 
 
-def run_all(runner, scenarios, options, scratch, work):
-    """Calls work(core, folder, scenario, seed) for each recording, on a core of its own. Results by (name of the
-    scenario, seed), and what went wrong."""
+def run_all(runner, scenarios, options, scratch, work, steps):
+    """Calls work(core, folder, scenario, seed, step) for each recording, on a core of its own; it may call step(what)
+    up to `steps` times as it gets on. Results by (name of the scenario, seed), and what went wrong. After an interrupt
+    work() may still return what it has."""
     results, failures = {}, []
+    progress = Progress(steps * options.seeds * sum(s["frames"] for s in scenarios))
 
     def job(scenario, seed):
         name = f"{scenario['name']}-{'+'.join(options.lidar)}-{options.returns}-{scenario['frames']}-seed{seed}"
         folder = scratch / name
         folder.mkdir(parents=True, exist_ok=True)
         core = runner.cores.get()
+        left = steps
+
+        def step(what):
+            nonlocal left
+            left -= 1
+            progress.add(scenario["frames"], f"{scenario['name']} seed {seed}{what}")
+
         try:
             recording(runner, core, folder, scenario, seed, options)
-            return work(core, folder, scenario, seed)
+            return work(core, folder, scenario, seed, step)
         finally:
             runner.cores.put(core)
             if not options.keep:
                 shutil.rmtree(folder, ignore_errors=True)
+            if left and not runner.stopped:
+                progress.add(left * scenario["frames"], f"{scenario['name']} seed {seed}")
 
-    progress = Progress(options.seeds * sum(s["frames"] for s in scenarios))
+    def collect(future, scenario, seed):
+        try:
+            results[scenario["name"], seed] = future.result()
+        except (RunFailed, OSError, ValueError, KeyError) as failure:
+            failures.append(f"{scenario['name']} seed {seed}: {failure!r}")
+        except (Interrupted, concurrent.futures.CancelledError):
+            pass
+
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         futures = {pool.submit(job, s, seed): (s, seed) for s in scenarios for seed in range(1, options.seeds + 1)}
         try:
-            for future in concurrent.futures.as_completed(futures):
-                scenario, seed = futures[future]
-                try:
-                    results[scenario["name"], seed] = future.result()
-                except (RunFailed, OSError, ValueError, KeyError) as failure:
-                    failures.append(f"{scenario['name']} seed {seed}: {failure!r}")
-                progress.add(scenario["frames"], f"{scenario['name']} seed {seed}")
+            concurrent.futures.wait(futures)
         except KeyboardInterrupt:
             failures.append("interrupted")
             runner.stop()
             pool.shutdown(cancel_futures=True)
         progress.end()
+    for future, of in futures.items():
+        collect(future, *of)
     return results, failures
 
 
@@ -185,14 +201,15 @@ def choose(scenarios, options, parser):
     return [s for s in scenarios if not options.scenarios or s["name"] in options.scenarios]
 
 
-def campaign(options, tool, scenarios, work):
+def campaign(options, tool, scenarios, work, steps=1):
     """run_all() where the options say, on recordings that go away afterwards unless they are to be kept. `work` gets
     the runner first."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    for interrupt in (signal.SIGINT, signal.SIGTERM):  # SIGINT too: a shell's background jobs begin without it
+        signal.signal(interrupt, signal.default_int_handler)
     with tempfile.TemporaryDirectory(prefix="campaign-") as scratch:
         runner = Runner(tool, options.jobs)
         return run_all(runner, scenarios, options, options.keep or pathlib.Path(scratch),
-                       lambda *arguments: work(runner, *arguments))
+                       lambda *arguments: work(runner, *arguments), steps)
 
 
 def write_csv(path, rows):
