@@ -11,7 +11,7 @@ import numpy as np
 import attack_faults as faults
 import campaign_judge as judge
 
-UNSEEABLE_TURN_DEG = 0.15  # a turn below that may stay unseen for good; translations: judge.FALSE_ERROR_M
+UNSEEN = (0.05, 0.15)      # m, deg: a pose that is off by less may stay unseen for good
 NOTICE_S = 3.0             # from the motion that shows a fault to health 0
 MAX_SPEED = 0.3            # m/s, hull.max_speed
 SPEEDING_S = 0.5           # that long has the hull to seem faster than that
@@ -87,7 +87,7 @@ class Verdict:
     frames: int
     healthy: int
     wrong: int           # healthy, and off by more than 5 cm or 0.1 deg
-    grave: int           # of these more than 5 cm or 0.15 deg
+    grave: int           # healthy, and off by more than may stay unseen
     late: int            # of these later than 3 s after the fault shows
     worst_m: float       # of healthy frames
     worst_deg: float
@@ -123,7 +123,7 @@ def fall(frames, after, seconds):
     return seconds(frames["t_ns"][zeros[0]]) if len(zeros) else math.inf
 
 
-def judge_attack(frames, truth, begin, shows, joints=()):
+def judge_attack(frames, truth, begin, shows, joints=(), unseen=UNSEEN):
     """`begin`, `shows`: ns. Tables of judge.read_table()."""
     twists = judge.error_twists(frames, truth)
     error = np.linalg.norm(twists[:, 3:], axis=1)
@@ -131,7 +131,7 @@ def judge_attack(frames, truth, begin, shows, joints=()):
     after = frames["t_ns"] >= begin
     healthy = after & (frames["health"] == 1)
     wrong = healthy & ~judge.within(error, turn)
-    grave = healthy & ~((error <= judge.FALSE_ERROR_M) & (turn <= UNSEEABLE_TURN_DEG))
+    grave = healthy & ~((error <= unseen[0]) & (turn <= unseen[1]))
     late = grave & (frames["t_ns"] > (shows + NOTICE_S * faults.SECOND if shows is not None else math.inf))
     down = after & (frames["health"] != 1)
     bits = frames["faults"][down].astype(int) if "faults" in frames else np.zeros(np.count_nonzero(down), dtype=int)

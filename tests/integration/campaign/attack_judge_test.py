@@ -101,6 +101,12 @@ class WhatIsWrong(unittest.TestCase):
         self.assertEqual((verdict.wrong, verdict.grave, verdict.late), (100, 50, 50))
         self.assertAlmostEqual(verdict.worst_deg, 0.16)
 
+    def test_how_much_may_stay_unseen_can_be_told(self):
+        yaw = np.where(np.arange(100) < 50, 0.3, 0.5)
+        verdict = attack_judge.judge_attack(frames(100, x=0.1, yaw=yaw), truth(10), at(0.0), at(0.0),
+                                            unseen=(0.15, 0.4))
+        self.assertEqual((verdict.wrong, verdict.grave), (100, 50))
+
     def test_what_never_shows_is_never_late(self):
         verdict = attack_judge.judge_attack(frames(100, x=1.0), truth(10), at(0.0), None)
         self.assertEqual((verdict.grave, verdict.late, verdict.shows_s), (100, 0, math.inf))
