@@ -102,7 +102,8 @@ void park(TriangleMesh& mesh, float lane, double share, RandomStream& random) {
   for (int slot = 0; slot < kSlots; ++slot) {
     const bool taken = random.uniform() < share;
     const TriangleMesh thing = drawn_thing(random);
-    const double x = static_cast<double>(kFirstSlot + kSlot * static_cast<float>(slot)) + random.uniform(-1.5, 1.5);
+    const double x =
+        static_cast<double>(kFirstSlot + kSlot * static_cast<float>(slot)) + random.uniform(-1.5, 1.5);
     const double heading = radians(random.uniform(-3.0, 3.0));
     if (taken) set_down(mesh, thing, x, static_cast<double>(lane), heading);
   }

@@ -1,8 +1,8 @@
 // What stands or moves on the quay that no map of it shows? Lorries, containers, hatch covers, people.
 //
-// Some were parked there since the quay was surveyed, one has left since; a lorry drives and two people walk to
-// and fro. Which, where and when follow from the seed. Between and behind the rails, never on the strip at the
-// edge, never in the portal's way. W, metres, seconds from the first firing. Pure.
+// Some were parked there since the quay was surveyed, one has left since; a lorry drives and two people walk
+// to and fro. Which, where and when follow from the seed. Between and behind the rails, never on the strip at
+// the edge, never in the portal's way. W, metres, seconds from the first firing. Pure.
 #pragma once
 
 #include <array>

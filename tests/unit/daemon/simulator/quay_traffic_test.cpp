@@ -19,7 +19,8 @@ TEST(QuayTraffic, IsTheSameForASeedAndAnotherForAnother) {
   EXPECT_EQ(parked_now(4).vertices, parked_now(4).vertices);
   EXPECT_NE(parked_now(4).vertices, parked_now(5).vertices);
   EXPECT_NE(parked_at_survey(4).vertices, parked_at_survey(5).vertices);
-  EXPECT_NE(movers(4)[0].walk.T_W_own(0.0).translation().x(), movers(5)[0].walk.T_W_own(0.0).translation().x());
+  EXPECT_NE(movers(4)[0].walk.T_W_own(0.0).translation().x(),
+            movers(5)[0].walk.T_W_own(0.0).translation().x());
 }
 
 TEST(QuayTraffic, LeavesEdgeAndPortalTheirWayAndStandsOnTheGround) {
@@ -53,7 +54,8 @@ TEST(QuayTraffic, NobodyJumpsAndEveryoneTurnsRound) {
     double high = -1e9;
     for (double t = 0.0; t < 400.0; t += 0.05) {
       const double x = mover.walk.T_W_own(t).translation().x();
-      EXPECT_LT((mover.walk.T_W_own(t + 0.05).translation() - mover.walk.T_W_own(t).translation()).norm(), 0.22);
+      EXPECT_LT((mover.walk.T_W_own(t + 0.05).translation() - mover.walk.T_W_own(t).translation()).norm(),
+                0.22);
       low = std::min(low, x);
       high = std::max(high, x);
     }
@@ -66,7 +68,8 @@ TEST(QuayTraffic, NobodyJumpsAndEveryoneTurnsRound) {
 float height(const SimulatedBerth& berth, double t, const Eigen::Vector3d& p) {
   constexpr double kFrom = 5.5;  // m, below the conveyor gallery
   const Pose& mount = berth.lidars().front().mount();
-  const Pose T_L_W = lidar_pose(loader_machine(), berth.true_joints(nanoseconds_from_ms(t * 1e3)), mount).inverse();
+  const Pose T_L_W =
+      lidar_pose(loader_machine(), berth.true_joints(nanoseconds_from_ms(t * 1e3)), mount).inverse();
   const Eigen::Vector3d origin = T_L_W * Eigen::Vector3d(p.x(), p.y(), kFrom);
   const Eigen::Vector3d down = T_L_W.linear() * Eigen::Vector3d(0.0, 0.0, -1.0);
   const auto hit = berth.world().cast(berth.world().sweep(mount, t, t + 0.001), t, origin.cast<float>(),
@@ -76,7 +79,8 @@ float height(const SimulatedBerth& berth, double t, const Eigen::Vector3d& p) {
 }
 
 TEST(QuayTraffic, IsInTheWorldWhereItIsAtThatTimeAndNotInTheMapOfTheQuay) {
-  const auto berth = std::move(SimulatedBerth::create({.scenario = "static", .seed = 9, .frames = 1})).value();
+  const auto berth =
+      std::move(SimulatedBerth::create({.scenario = "static", .seed = 9, .frames = 1})).value();
   for (const Mover& mover : movers(9)) {
     const Eigen::Vector3d here = mover.walk.T_W_own(5.0).translation();
     const auto x = static_cast<float>(here.x());
