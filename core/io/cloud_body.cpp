@@ -33,7 +33,7 @@ Result<void> check_body_size(std::size_t promised, std::size_t present) {
 }
 
 Result<Cloud> parse_ascii_body(HeaderLines& lines, std::size_t points, std::size_t words,
-                               const AxisWords& axes) {
+                               const AxisWords& axes, const FileFrame& frame) {
   Cloud cloud;
   cloud.reserve(std::min(points, lines.rest().size() / (2 * words) + 1));  // a digit and a blank each
   while (cloud.size() < points) {
@@ -41,7 +41,7 @@ Result<Cloud> parse_ascii_body(HeaderLines& lines, std::size_t points, std::size
     if (!line) {
       return cut_short(points, "points", cloud.size());
     }
-    Point point = Point::Zero();
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
     for (std::size_t word = 0; word < words; ++word) {
       const std::string_view text = take_word(*line);
       if (text.empty()) {
@@ -55,7 +55,7 @@ Result<Cloud> parse_ascii_body(HeaderLines& lines, std::size_t points, std::size
         }
       }
     }
-    cloud.push_back(point);
+    cloud.push_back(frame.place(point));
   }
   return cloud;
 }

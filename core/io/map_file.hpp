@@ -8,9 +8,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "core/geometry/cloud.hpp"
+#include "core/geometry/se3.hpp"
 
 namespace hulltrack {
 
@@ -20,16 +22,17 @@ inline constexpr std::size_t kMaxMapPoints = 20'000'000;
 inline constexpr float kMaxMapCoordinate = 10'000.0F;
 
 struct MapFile {
-  Cloud cloud;              // finite points only, in the file's order; never empty
-  std::size_t dropped = 0;  // points left out: not finite, or too far from the origin
+  Cloud cloud;                       // finite points only, in the file's order; never empty
+  std::size_t dropped = 0;           // points left out: not finite, or too far from the origin
+  Pose moved_by = Pose::Identity();  // the file's own transform (VIEWPOINT), which the points went through
 };
 
 /// Some dropped points are normal (organised clouds mark missing returns with NaN); a file in which they
 /// outnumber the good ones is refused.
 [[nodiscard]] Result<MapFile> read_map_file(const std::filesystem::path& file);
 
-/// One line for whoever starts to work with `map`: how many points were left out and what to do. Empty when
-/// none was.
-[[nodiscard]] std::string remark_on_dropped(const std::filesystem::path& file, const MapFile& map);
+/// Lines for whoever starts to work with `map`: what was done to its points, and what to do if that is wrong.
+/// Empty when they are what stands in the file.
+[[nodiscard]] std::vector<std::string> remarks_on(const std::filesystem::path& file, const MapFile& map);
 
 }  // namespace hulltrack

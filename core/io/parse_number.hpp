@@ -29,10 +29,8 @@ template <typename T>
 }
 
 /// A coordinate in text; "nan" and "inf" are numbers here. False for anything else.
-[[nodiscard]] inline bool parse_coordinate(std::string_view word, float& value) {
-  double number = 0.0;  // as double: text beyond float's range becomes infinite, which the caller drops
-  const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), number);
-  value = static_cast<float>(number);
+[[nodiscard]] inline bool parse_coordinate(std::string_view word, double& value) {
+  const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
   return failure == std::errc{} && end == word.data() + word.size();
 }
 

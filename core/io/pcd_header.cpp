@@ -1,6 +1,8 @@
 #include "core/io/pcd_header.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +17,10 @@ namespace {
 constexpr std::size_t kMaxFields = 64;
 constexpr std::size_t kMaxCount = 4096;  // values of one field
 
+// A quaternion printed to three digits or more: four numbers, each off by 0.0005 at most, are off by 0.001
+// together. One that is longer or shorter by more is none, and nobody can say which turn was meant.
+constexpr double kOffUnit = 0.001;
+
 /// One word for each field of a SIZE, TYPE or COUNT line, given to `set`, which says whether it is legal.
 template <typename Set>
 bool each_field(std::string_view words, std::vector<PcdField>& fields, Set set) {
@@ -24,6 +30,34 @@ bool each_field(std::string_view words, std::vector<PcdField>& fields, Set set) 
     }
   }
   return take_word(words).empty();
+}
+
+/// "tx ty tz qw qx qy qz" as the pose that it is, or what is wrong with it.
+Result<Pose> parse_viewpoint(std::string_view words) {
+  std::array<double, 7> v{};
+  for (double& value : v) {
+    const auto number = parse_number<double>(take_word(words));
+    if (!number) {
+      return Error{
+          "VIEWPOINT must be seven finite numbers, x y z of a shift and w x y z of a unit quaternion; "
+          "correct the line, or write `VIEWPOINT 0 0 0 1 0 0 0` if the points are where they belong"};
+    }
+    value = *number;
+  }
+  if (!take_word(words).empty()) {
+    return Error{"VIEWPOINT has more than seven numbers; correct the line"};
+  }
+  const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
+  if (!(std::abs(q.norm() - 1.0) <= kOffUnit)) {
+    return Error{
+        "the quaternion of VIEWPOINT has the length " + std::to_string(q.norm()) +
+        ", must be 1 to 0.001; correct the line, or write `VIEWPOINT 0 0 0 1 0 0 0` if the points are "
+        "where they belong"};
+  }
+  Pose pose = Pose::Identity();
+  pose.linear() = q.normalized().toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
+  return pose;
 }
 
 class HeaderParser {
@@ -36,7 +70,13 @@ class HeaderParser {
       if (!line || lines_.count() > 100) {
         return Error{"its header has no DATA line; is the file cut short?"};
       }
-      if (!take(*line)) {
+      if (std::string_view words = *line; take_word(words) == "VIEWPOINT") {
+        const auto viewpoint = parse_viewpoint(words);
+        if (!viewpoint) {
+          return lines_.error(viewpoint.error().message);
+        }
+        header_.viewpoint = *viewpoint;
+      } else if (!take(*line)) {
         return lines_.error(std::string("`").append(line->substr(0, 60)) +
                             "` is not a legal line of a PCD header");
       }
@@ -47,7 +87,7 @@ class HeaderParser {
  private:
   bool take(std::string_view line) {
     const std::string_view word = take_word(line);
-    if (word.empty() || word.starts_with('#') || word == "VERSION" || word == "VIEWPOINT") {
+    if (word.empty() || word.starts_with('#') || word == "VERSION") {
       return true;
     }
     if (word == "FIELDS" || word == "COLUMNS") {

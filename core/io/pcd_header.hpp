@@ -1,6 +1,6 @@
 // The header of a PCD file (Point Cloud Library's format 0.6, 0.7): what a point consists of, and how many.
 //
-// Strict on what is used (FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, POINTS, DATA); VERSION, VIEWPOINT and
+// Strict on what is used (FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS, DATA); VERSION and
 // comments are passed over. Every number is bounded, so that points * record cannot overflow.
 // Views into the bytes given. An error has no file name; a line is named where there is one.
 #pragma once
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/result.hpp"
+#include "core/geometry/se3.hpp"
 #include "core/io/header_lines.hpp"
 
 namespace hulltrack {
@@ -25,9 +26,10 @@ struct PcdField {
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::size_t points = 0;
-  std::string_view data;   // ascii, binary, binary_compressed
-  std::size_t record = 0;  // bytes of one point
-  std::size_t values = 0;  // words of one point in ascii
+  std::string_view data;              // ascii, binary, binary_compressed
+  std::size_t record = 0;             // bytes of one point
+  std::size_t values = 0;             // words of one point in ascii
+  Pose viewpoint = Pose::Identity();  // VIEWPOINT: takes the file's points to where they are meant to be
 };
 
 /// Where one of x, y, z stands in a point.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "core/io/cloud_body.hpp"
@@ -15,11 +16,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary PCD is little-endian");
 
-float load(const char* bytes, std::size_t size) {
+double load(const char* bytes, std::size_t size) {
   if (size == 8) {
     double value = 0.0;
     std::memcpy(&value, bytes, sizeof value);
-    return static_cast<float>(value);
+    return value;
   }
   float value = 0.0F;
   std::memcpy(&value, bytes, sizeof value);
@@ -31,13 +32,16 @@ Result<Cloud> parse_binary(const PcdHeader& header, const PcdAxes& axes, std::st
   if (const auto whole = check_body_size(needed, body.size()); !whole) {
     return whole.error();
   }
+  const FileFrame frame(header.viewpoint);
   Cloud cloud(header.points);
   for (std::size_t i = 0; i < header.points; ++i) {
     const char* record = body.data() + i * header.record;
+    Eigen::Vector3d point;
     for (int axis = 0; axis < 3; ++axis) {
       const PcdCoordinate& place = axes[static_cast<std::size_t>(axis)];
-      cloud[i][axis] = load(record + place.offset, place.size);
+      point[axis] = load(record + place.offset, place.size);
     }
+    cloud[i] = frame.place(point);
   }
   return cloud;
 }
@@ -63,15 +67,27 @@ Result<Cloud> parse_compressed(const PcdHeader& header, const PcdAxes& axes, std
   if (!lzf_decompress({packed, compressed}, bytes)) {
     return damaged;
   }
+  const FileFrame frame(header.viewpoint);
   Cloud cloud(header.points);
-  for (int axis = 0; axis < 3; ++axis) {
-    const PcdCoordinate& place = axes[static_cast<std::size_t>(axis)];
-    const char* column = reinterpret_cast<const char*>(bytes.data()) + place.offset * header.points;
-    for (std::size_t i = 0; i < header.points; ++i) {
-      cloud[i][axis] = load(column + i * place.size, place.size);
+  for (std::size_t i = 0; i < header.points; ++i) {
+    Eigen::Vector3d point;
+    for (int axis = 0; axis < 3; ++axis) {
+      const PcdCoordinate& place = axes[static_cast<std::size_t>(axis)];
+      const char* column = reinterpret_cast<const char*>(bytes.data()) + place.offset * header.points;
+      point[axis] = load(column + i * place.size, place.size);
     }
+    cloud[i] = frame.place(point);
   }
   return cloud;
+}
+
+Result<Cloud> parse_body(const PcdHeader& header, const PcdAxes& axes, HeaderLines& lines) {
+  if (header.data == "ascii") {
+    return parse_ascii_body(lines, header.points, header.values, {axes[0].word, axes[1].word, axes[2].word},
+                            FileFrame(header.viewpoint));
+  }
+  return header.data == "binary" ? parse_binary(header, axes, lines.rest())
+                                 : parse_compressed(header, axes, lines.rest());
 }
 
 }  // namespace
@@ -80,7 +96,7 @@ bool is_pcd(std::string_view bytes) {
   return bytes.starts_with("# .PCD") || bytes.starts_with("VERSION") || bytes.starts_with("FIELDS");
 }
 
-Result<Cloud> parse_pcd(std::string_view bytes) {
+Result<PcdCloud> parse_pcd(std::string_view bytes) {
   HeaderLines lines(bytes);
   const auto header = parse_pcd_header(lines);
   if (!header) {
@@ -90,12 +106,11 @@ Result<Cloud> parse_pcd(std::string_view bytes) {
   if (!axes) {
     return axes.error();
   }
-  if (header->data == "ascii") {
-    return parse_ascii_body(lines, header->points, header->values,
-                            {(*axes)[0].word, (*axes)[1].word, (*axes)[2].word});
+  auto points = parse_body(*header, *axes, lines);
+  if (!points) {
+    return points.error();
   }
-  return header->data == "binary" ? parse_binary(*header, *axes, lines.rest())
-                                  : parse_compressed(*header, *axes, lines.rest());
+  return PcdCloud{std::move(points).value(), header->viewpoint};
 }
 
 }  // namespace hulltrack

@@ -7,9 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/base/text.hpp"
-#include "core/io/map_file.hpp"
-#include "core/map/hull_map.hpp"
+#include "daemon/app/load_map.hpp"
 #include "daemon/app/memory_file.hpp"
 #include "daemon/app/quay_file.hpp"
 #include "lidar_drivers/model_registry.hpp"
@@ -58,21 +56,6 @@ Result<std::string> judged_calibration(const LidarConfig& lidar) {
                  : Error{replaced(decoder.error().message, copy.path().string(), lidar.calibration)};
 }
 
-/// The map of the file, and what to know of it although it can be used.
-Result<MapFile> judged_map(const Config& config) {
-  Result<MapFile> map = read_map_file(config.map_file);
-  if (!map) {
-    return map;
-  }
-  const auto least = static_cast<std::size_t>(config.tracker.health.min_matched);
-  if (map->cloud.size() < least) {
-    return Error{config.map_file.string() + ": has " + counted(map->cloud.size(), "point") +
-                 ", fewer than health.min_matched = " + std::to_string(least) +
-                 "; no scan could ever match it: make a denser map"};
-  }
-  return map;
-}
-
 class FileReader {
  public:
   FileReader(const std::filesystem::path& config_file, const ConfigReading& reading, std::size_t memory_mb,
@@ -113,15 +96,21 @@ class FileReader {
 
   void read_map(const Config& config) {
     begins_(PreparationStep::map, 0);
-    Result<MapFile> map = judged_map(config);
-    if (!map) {
-      complain("hull.map", map.error().message);
-      return;
+    const LoadedMap loaded = load_map(config.map_file, config.tracker,
+                                      [this] { begins_(PreparationStep::map_making, 0); });
+    for (const MapFinding& finding : loaded.findings) {
+      if (reading_.bad_keys.contains(finding.key)) {
+        continue;  // its value here is the default, not the site's
+      }
+      if (finding.refused) {
+        complain(finding.key, finding.message);
+      } else {
+        remark(to_string(reading_.problem_with(config_file_, finding.key, "warning: " + finding.message)));
+      }
     }
-    remark(remark_on_dropped(config.map_file, *map));
-    begins_(PreparationStep::map_making, 0);
-    const HullMap made(std::move(map->cloud));
-    files_.map_H = made.cloud_H();
+    if (loaded.map) {
+      files_.map_H = loaded.map->cloud_H();
+    }
   }
 
   void read_quay(const Config& config) {

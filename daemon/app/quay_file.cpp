@@ -36,7 +36,11 @@ Result<QuayFile> read_quay_file(const std::filesystem::path& file) {
   if (!read) {
     return read.error();
   }
-  QuayFile quay{.cloud_W = std::move(read->cloud), .remark = remark_on_dropped(file, *read)};
+  QuayFile quay;
+  for (const std::string& line : remarks_on(file, *read)) {
+    quay.remark += (quay.remark.empty() ? "" : "\n") + line;
+  }
+  quay.cloud_W = std::move(read->cloud);
   quay.map = std::make_shared<const QuayMap>(quay.cloud_W);
   if (quay.map->planes().size() < kFewest) {
     return Error{

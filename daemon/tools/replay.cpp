@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "core/io/map_file.hpp"
 #include "core/io/plc_csv.hpp"
 #include "daemon/app/frame_pipeline.hpp"
+#include "daemon/app/load_map.hpp"
 #include "daemon/app/quay_file.hpp"
 #include "daemon/config/read_config.hpp"
 #include "daemon/tools/frame_csv.hpp"
@@ -104,12 +104,23 @@ std::vector<TruthRow> load_truth(const std::filesystem::path& folder) {
   return std::filesystem::exists(file) ? value_or_throw(read_truth_csv(file)) : std::vector<TruthRow>{};
 }
 
-std::shared_ptr<const HullMap> load_map(const std::filesystem::path& file) {
-  MapFile map = value_or_throw(read_map_file(file));
-  if (const std::string remark = remark_on_dropped(file, map); !remark.empty()) {
-    std::fprintf(stderr, "%s\n", remark.c_str());
+/// Warnings go to standard error; what refuses the map is the error.
+std::shared_ptr<const HullMap> map_of(const Config& config) {
+  LoadedMap loaded = load_map(config.map_file, config.tracker);
+  std::string refusals;
+  for (const MapFinding& finding : loaded.findings) {
+    const bool of_map = finding.key == "hull.map";  // its messages begin with the file's name
+    const std::string line = (of_map ? "" : finding.key + ": ") + finding.message;
+    if (finding.refused) {
+      refusals += (refusals.empty() ? "" : "\n") + line;
+    } else {
+      std::fprintf(stderr, "%s\n", line.c_str());
+    }
   }
-  return std::make_shared<const HullMap>(std::move(map.cloud));
+  if (!loaded.map) {
+    throw ToolError(refusals);
+  }
+  return std::move(loaded.map);
 }
 
 std::shared_ptr<const QuayMap> load_quay(const std::filesystem::path& file) {
@@ -125,7 +136,7 @@ void replay(const ReplayOptions& options) {
   const Config config = load_config(options);
   std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
   ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
-  FramePipeline pipeline(config, load_map(config.map_file), load_quay(config.quay_file));
+  FramePipeline pipeline(config, map_of(config), load_quay(config.quay_file));
   std::optional<FrameCsv> csv;
   if (!options.csv.empty()) {
     csv = value_or_throw(FrameCsv::create(options.csv));

@@ -16,7 +16,9 @@ namespace hulltrack {
 namespace {
 
 using test::TempFolder;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 const Cloud kCloud = {{1.5F, -2.25F, 3.0F}, {0.1F, 100.0F, -7.5F}, {-9999.0F, 0.0F, 1e-6F}};
@@ -111,9 +113,71 @@ TEST(MapFile, FewUnusablePointsAreDroppedAndCounted) {
   ASSERT_TRUE(map) << map.error().message;
   EXPECT_EQ(map->cloud, kCloud);
   EXPECT_EQ(map->dropped, 2U);
-  EXPECT_THAT(remark_on_dropped("a.pcd", *map),
-              StartsWith("a.pcd: 2 of its " + std::to_string(kCloud.size() + 2) + " points are no numbers"));
-  EXPECT_EQ(remark_on_dropped("a.pcd", MapFile{kCloud, 0}), "");
+  const std::string words = "a.pcd: 2 of its " + std::to_string(kCloud.size() + 2) + " points are no numbers";
+  EXPECT_THAT(remarks_on("a.pcd", *map), ElementsAre(StartsWith(words)));
+  EXPECT_THAT(remarks_on("a.pcd", MapFile{kCloud}), IsEmpty());
+}
+
+/// A header with this VIEWPOINT, for doubles.
+std::string moved_header(const std::string& viewpoint, const std::string& data) {
+  return "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT " +
+         viewpoint + "\nPOINTS 2\nDATA " + data + "\n";
+}
+
+// A third of a turn about (1, 1, 1), which makes x y z of y z x: (a, b, c) becomes (c, a, b). Then the shift.
+constexpr const char* kTurned = "100 20 3 0.5 0.5 0.5 0.5";
+
+TEST(MapFile, PointsLieWhereTheFilesOwnViewpointPutsThem) {
+  const TempFolder folder;
+  std::string columns;  // as DATA binary_compressed has them: all x, all y, all z, here as literals alone
+  for (const double value : {1.0, 4.0, 2.0, 5.0, 3.0, 6.0}) {
+    columns += bytes_of(value);
+  }
+  const std::string packed = std::string(1, '\x1F') + columns.substr(0, 32) + "\x0F" + columns.substr(32);
+  const std::vector<std::string> files{moved_header(kTurned, "ascii") + "1 2 3\n4 5 6\n",
+                                       moved_header(kTurned, "binary") + bytes_of(1.0) + bytes_of(2.0) +
+                                           bytes_of(3.0) + bytes_of(4.0) + bytes_of(5.0) + bytes_of(6.0),
+                                       moved_header(kTurned, "binary_compressed") +
+                                           bytes_of(static_cast<std::uint32_t>(packed.size())) +
+                                           bytes_of(48U) + packed};
+  for (const std::string& content : files) {
+    const auto map = read_map_file(folder.file("a.pcd", content));
+    ASSERT_TRUE(map) << map.error().message;
+    ASSERT_EQ(map->cloud.size(), 2U);
+    EXPECT_LT((map->cloud[0] - Point(103.0F, 21.0F, 5.0F)).norm(), 1e-5F) << map->cloud[0].transpose();
+    EXPECT_LT((map->cloud[1] - Point(106.0F, 24.0F, 8.0F)).norm(), 1e-5F) << map->cloud[1].transpose();
+    EXPECT_THAT(
+        remarks_on("a.pcd", *map),
+        ElementsAre(StartsWith("a.pcd: its VIEWPOINT shifts the points by 100.000, 20.000, 3.000 m and turns "
+                               "them by 120.000 deg, and so they are used")));
+  }
+}
+
+TEST(MapFile, AViewpointFarAwayCostsNoMillimetre) {
+  // Site coordinates in the shift, which the points take back: what is left fits in a float, the parts do
+  // not.
+  const TempFolder folder;
+  const auto map =
+      read_map_file(folder.file("a.pcd", moved_header("-500000.125 -5700000.25 0 1 0 0 0", "ascii") +
+                                             "500001.126 5700002.253 3\n500000.125 5700000.25 0\n"));
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_LT((map->cloud[0] - Point(1.001F, 2.003F, 3.0F)).norm(), 1e-5F) << map->cloud[0].transpose();
+}
+
+TEST(MapFile, AViewpointPrintedToThreeDigitsIsTheTurnItStandsFor) {
+  const TempFolder folder;
+  const auto map = read_map_file(
+      folder.file("a.pcd", moved_header("0 0 0 0.707 0 0 0.707", "ascii") + "10 0 0\n0 10 0\n"));
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_LT((map->cloud[0] - Point(0.0F, 10.0F, 0.0F)).norm(), 1e-5F) << "neither longer nor shorter";
+}
+
+TEST(MapFile, OfTheIdentityAsViewpointNothingIsSaid) {
+  const TempFolder folder;
+  const auto map =
+      read_map_file(folder.file("a.pcd", moved_header("0 0 0 1 0 0 0", "ascii") + "1 2 3\n4 5 6\n"));
+  ASSERT_TRUE(map);
+  EXPECT_THAT(remarks_on("a.pcd", *map), IsEmpty());
 }
 
 struct Broken {
@@ -179,6 +243,18 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"pcd_compressed_damaged",
                pcd_header("1", "binary_compressed") + bytes_of(4U) + bytes_of(12U) + "\xFF\xFF\xFF\xFF",
                "compressed points are damaged"},
+        Broken{"pcd_viewpoint_short", moved_header("0 0 0 1 0 0", "ascii") + "1 2 3\n4 5 6\n",
+               "line 8: VIEWPOINT must be seven finite numbers"},
+        Broken{"pcd_viewpoint_empty", moved_header("", "ascii") + "1 2 3\n4 5 6\n",
+               "line 8: VIEWPOINT must be seven finite numbers"},
+        Broken{"pcd_viewpoint_nan", moved_header("0 nan 0 1 0 0 0", "ascii") + "1 2 3\n4 5 6\n",
+               "line 8: VIEWPOINT must be seven finite numbers"},
+        Broken{"pcd_viewpoint_long", moved_header("0 0 0 1 0 0 0 0", "ascii") + "1 2 3\n4 5 6\n",
+               "line 8: VIEWPOINT has more than seven numbers"},
+        Broken{"pcd_viewpoint_of_no_turn", moved_header("0 0 0 0 0 0 0", "ascii") + "1 2 3\n4 5 6\n",
+               "line 8: the quaternion of VIEWPOINT has the length 0.000000, must be 1 to 0.001"},
+        Broken{"pcd_viewpoint_not_unit", moved_header("0 0 0 0.71 0 0 0.71", "ascii") + "1 2 3\n4 5 6\n",
+               "line 8: the quaternion of VIEWPOINT has the length 1.004"},
         Broken{"pcd_all_nan", pcd_header("2", "binary") + floats(std::vector<float>(6, kNan)),
                "2 of its 2 points are not finite"},
         Broken{"pcd_half_nan", pcd_header("2", "ascii") + "1 2 3\nnan nan nan\n",
