@@ -97,8 +97,8 @@ class ServiceTest(unittest.TestCase):
                 service.signal(number)
                 service.wait_for_notice(lambda notice: "STOPPING=1" in notice, "STOPPING=1")
                 self.assertEqual(service.wait(), 0, service.err.all)
+                self.assert_told_the_end(plc)
                 last = plc.writes()[-1]
-                self.assertEqual((last["health"], last["state"]), (0, 7))
                 self.assertEqual(last["heartbeat"], last["heartbeat_copy"])
                 service.close()
                 (self.folder / "notify").unlink()
@@ -181,8 +181,7 @@ class ServiceTest(unittest.TestCase):
         service.wait_for_notice(lambda notice: "RELOADING=1" in notice, "RELOADING=1")
         service.signal(signal.SIGTERM)
         self.assertEqual(service.wait(), 0, service.err.all)
-        last = plc.writes()[-1]
-        self.assertEqual((last["health"], last["state"]), (0, 7))
+        self.assert_told_the_end(plc)
         self.assertTrue(any("stopped as asked" in line for line in service.err.all), service.err.all)
 
     def write_big_map(self, name, points):
@@ -253,7 +252,7 @@ class ServiceTest(unittest.TestCase):
                 plc.wait_for(lambda record: True, "at all")
                 service.signal(signal.SIGTERM)
                 self.assertEqual(service.wait(), 0, service.err.all)
-                self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+                self.assert_told_the_end(plc)
                 self.wait_for_end(pidfd)
                 service.close()
                 (self.folder / "notify").unlink()
@@ -275,7 +274,7 @@ class ServiceTest(unittest.TestCase):
         line = self.config.read_text(encoding="utf-8").splitlines().index('calibration = "pipe"') + 1
         self.assertIn(f"{self.config}:{line}: lidar.calibration: {self.folder}/pipe: reading it ended the reader",
                       "\n".join(service.err.all))
-        self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+        self.assert_told_the_end(plc)
 
     def test_the_reader_never_outlives_the_service(self):
         _, service, reader = self.stuck_in_a_reload()
@@ -293,8 +292,10 @@ class ServiceTest(unittest.TestCase):
                 plc = self.start(Plc())
                 self.write_config(plc.port, more)
                 self.assertEqual(self.run_to_end().returncode, 78)
-                last = [(record["health"], record["state"]) for record in plc.writes()[-1:]]
-                self.assertEqual(last, [(0, 7)] if told else [])
+                if told:
+                    self.assert_told_the_end(plc)
+                else:
+                    self.assertEqual(plc.writes(), [])
 
     def test_a_plc_that_never_answers_does_not_hold_up_the_end(self):
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as silent:
@@ -341,7 +342,7 @@ class ServiceTest(unittest.TestCase):
         service = self.waiting(plc)
         service.signal(signal.SIGTERM)
         self.assertEqual(service.wait(), 0, service.err.all)
-        self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+        self.assert_told_the_end(plc)
 
     def test_a_start_that_fails_is_counted(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
@@ -427,7 +428,7 @@ class ServiceTest(unittest.TestCase):
         self.assert_unbroken_heartbeat(plc)
         service.signal(signal.SIGTERM)
         self.assertEqual(service.wait(), 0)
-        self.assertEqual((plc.writes()[-1]["health"], plc.writes()[-1]["state"]), (0, 7))
+        self.assert_told_the_end(plc)
 
     def test_a_calibration_file_for_a_model_that_takes_none_exits_78(self):
         self.write_config(502)
@@ -468,6 +469,12 @@ class ServiceTest(unittest.TestCase):
         self.assertIn("--help", done.stderr)
         for option in ("--help", "--version"):
             self.assertEqual(self.run_to_end(option).returncode, 0)
+
+    def assert_told_the_end(self, plc):
+        """Waits for it: the PLC's log arrives by a pipe of its own."""
+        last = plc.wait_for(lambda record: record["state"] == 7, "of a service that has ended")
+        self.assertEqual(last["health"], 0)
+        self.assertEqual(plc.writes()[-1], last)
 
     @staticmethod
     def after_first_health(plc):
