@@ -30,9 +30,10 @@ class PlcThreadTest : public testing::Test {
     frame.result.state = State::tracking;
     return frame;
   }
-  /// A pose stays young for longer than a busy machine may take to write it.
+  /// A pose stays young, and a reply is awaited, for longer than a busy machine may take.
   static Config patient(Config config) {
     config.tracker.health.max_age = kMaxAge;
+    config.plc.response_timeout = std::chrono::seconds(10);
     return config;
   }
   void deliver(const FrameDone& frame) {
@@ -135,6 +136,29 @@ TEST_F(PlcThreadTest, AJumpOfAJointStandsInTheRegistersAndWaitsForAnEdge) {
   ASSERT_TRUE(wait_until(believed));
   exchange.joints.drain_into(joints);
   EXPECT_FALSE(joints.newest()->on_trial);
+}
+
+TEST_F(PlcThreadTest, WritesBeforeItReads) {
+  plc.server().set_command(kCommandHold);
+  GuardedThread runner(
+      "plc", [this](std::stop_token stop) { thread.run(stop); },
+      [](const std::string&, const std::string&) {}, [this] { exchange.plc_bell.ring(); });
+  ASSERT_TRUE(plc.wait_for([](const WriteBlock& block) { return block.command_echo == kCommandHold; }, 0));
+  EXPECT_EQ(plc.blocks().front().command_echo, 0)
+      << "the first block went out before the command word was read";
+  EXPECT_FALSE(plc.blocks().front().health);
+}
+
+TEST_F(PlcThreadTest, BeforeASuccessorTheLastWriteIsAUsualOneAndItsHeartbeatIsHandedOn) {
+  {
+    GuardedThread runner(
+        "plc", [this](std::stop_token stop) { thread.run(stop); },
+        [](const std::string&, const std::string&) {}, [this] { exchange.plc_bell.ring(); });
+    ASSERT_TRUE(plc.wait_for([](const WriteBlock&) { return true; }, 0));
+    thread.leave_without_farewell();
+  }
+  EXPECT_EQ(plc.blocks().back().state, State::starting);
+  EXPECT_EQ(plc.blocks().back().heartbeat, thread.memory().heartbeat);
 }
 
 TEST_F(PlcThreadTest, AnEscapingExceptionLeavesHealthZeroAndStateStopped) {
