@@ -18,14 +18,14 @@ constexpr Nanoseconds kSettles = std::chrono::milliseconds(300);
 constexpr Nanoseconds kLongest = std::chrono::seconds(10);
 constexpr Nanoseconds kGap = std::chrono::milliseconds(500);
 
-// What a moored ship does by herself within ten seconds, 1 sigma: rolls and pitches with the waves, ranges at her
-// lines with half a period of 15 s and more; rotation, then translation.
+// What a moored ship does by herself within ten seconds, 1 sigma: rolls and pitches with the waves, ranges at
+// her lines with half a period of 15 s and more; rotation, then translation.
 const Twist kOwnMotion = (Twist() << radians(0.3), radians(0.1), radians(0.1), 0.15, 0.10, 0.05).finished();
 // As many moves as this are what that is worth when a scatter is estimated.
 constexpr double kPriorMoves = 10.0;
 
-// Student's t that one machine in a million reaches by chance, two-sided, with the 13 degrees of freedom of four
-// moves and the prior; more moves have smaller ones.
+// Student's t that one machine in a million reaches by chance, two-sided, with the 13 degrees of freedom of
+// four moves and the prior; more moves have smaller ones.
 constexpr double kBeyondChance = 8.7;
 // Below this it is an encoder's drift within its class over a short move: 0.05 deg of 2.5 deg.
 constexpr double kLeast = 0.02;
@@ -119,9 +119,10 @@ std::string JointMotionWitness::contradiction() const {
   for (const JointName joint : kAllJoints) {
     const Evidence seen = evidence(joint);
     if (seen.both_ways && std::abs(seen.s) > kLeast && std::abs(seen.t) > kBeyondChance) {
-      return format_text("the hull seems to move by %.2f times the %s in each of its last %zu moves: %s of %s?",
-                         seen.s, joint_name(joint), seen.moves,
-                         seen.s > 1.0 ? "sign" : "scale, or bias of another joint, or mount", joint_name(joint));
+      return format_text(
+          "the hull seems to move by %.2f times the %s in each of its last %zu moves: %s of %s?", seen.s,
+          joint_name(joint), seen.moves, seen.s > 1.0 ? "sign" : "scale, or bias of another joint, or mount",
+          joint_name(joint));
     }
   }
   return {};

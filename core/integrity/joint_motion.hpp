@@ -1,14 +1,14 @@
 // Does the hull move in time with the loader's joints? No ship does, so then a joint is not what it reads.
 //
-// A joint that reads q while the machine turns or travels by another amount lets the hull seem to move by s times
-// the joint's own motion: s = 1 - dq_true / dq_read, so 2 with a wrong sign, 0.02 with a scale that is 2 % off.
-// Every move of the machine (from rest to rest, at most ten seconds) is one trial: by how much did the hull seem
-// to move (y), by how much would it have with s = 1 (one column of X a joint)? s of a move is the least squares
-// answer under what a moored ship does by herself meanwhile. Over the moves s has a mean and a scatter; a ship
-// that surges, is warped or sinks scatters, since she does not know which way the joint goes. Student's t of the
-// mean, with the ship's usual motion as a prior for the scatter, is the evidence: it takes several moves, to and
-// fro. No moving joint, no verdict.
-// Frame W, about the hull's reference point; metres, radians. Thread rule: one owner. Cost: a few microseconds.
+// A joint that reads q while the machine turns or travels by another amount lets the hull seem to move by s
+// times the joint's own motion: s = 1 - dq_true / dq_read, so 2 with a wrong sign, 0.02 with a scale that is
+// 2 % off. Every move of the machine (from rest to rest, at most ten seconds) is one trial: by how much did
+// the hull seem to move (y), by how much would it have with s = 1 (one column of X a joint)? s of a move is
+// the least squares answer under what a moored ship does by herself meanwhile. Over the moves s has a mean
+// and a scatter; a ship that surges, is warped or sinks scatters, since she does not know which way the joint
+// goes. Student's t of the mean, with the ship's usual motion as a prior for the scatter, is the evidence: it
+// takes several moves, to and fro. No moving joint, no verdict. Frame W, about the hull's reference point;
+// metres, radians. Thread rule: one owner. Cost: a few microseconds.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ class JointMotionWitness {
 
   explicit JointMotionWitness(const MachineConfig& machine) : machine_(machine) {}
 
-  /// Once a frame whose pose the scan does not contradict: where the reference point seems to be and how the hull
-  /// seems to lie. Frames come in order of time.
+  /// Once a frame whose pose the scan does not contradict: where the reference point seems to be and how the
+  /// hull seems to lie. Frames come in order of time.
   void add(MeasurementTime time, const MachineStand& stand, const Eigen::Vector3d& reference_W,
            const Eigen::Matrix3d& R_W_H);
 

@@ -89,7 +89,8 @@ StrayPoints take_out_strays(Cloud& cloud) {
   for (const std::uint32_t i : places) {
     ++surface[pieces.of(cloud[i])];
   }
-  const auto ship = static_cast<std::uint32_t>(std::max_element(surface.begin(), surface.end()) - surface.begin());
+  const auto ship =
+      static_cast<std::uint32_t>(std::max_element(surface.begin(), surface.end()) - surface.begin());
   if (static_cast<double>(places.size() - surface[ship]) > kStrayShare * static_cast<double>(places.size())) {
     return strays;
   }

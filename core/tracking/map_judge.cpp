@@ -29,8 +29,8 @@ constexpr double kLeastSlender = 1.25;
 // it allows for the position: 0.05 m / 0.1 deg = 28.6 m. The displacement then is of no place on the ship.
 const double kFarthestReference = kPosition / kAttitude;
 
-// A hull heels by 6 deg at most, trims by 2 deg and turns by 6 deg against its map (hull_search.cpp): some 9 deg
-// together, which move a point by this share of its distance from the reference point.
+// A hull heels by 6 deg at most, trims by 2 deg and turns by 6 deg against its map (hull_search.cpp): some 9
+// deg together, which move a point by this share of its distance from the reference point.
 constexpr double kMostTurned = 0.16;
 
 // What a healthy frame needs confirmed (integrity_limits.cpp).
@@ -70,21 +70,25 @@ void judge_size(const Box& box, Findings& findings) {
   Eigen::Index longest = 0;
   const double length = size.maxCoeff(&longest);
   if (length > kLongestHull) {
-    refuse(findings, "hull.map",
-           format_text("extends %.0f m along %s, and no hull is longer than %.0f m%s; save the map in metres, with "
-                       "nothing in it but the ship",
-                       length, kAxes[static_cast<std::size_t>(longest)], kLongestHull,
-                       as_another_unit(length).c_str()));
+    refuse(
+        findings, "hull.map",
+        format_text(
+            "extends %.0f m along %s, and no hull is longer than %.0f m%s; save the map in metres, with "
+            "nothing in it but the ship",
+            length, kAxes[static_cast<std::size_t>(longest)], kLongestHull, as_another_unit(length).c_str()));
   } else if (length < kShortestHull) {
     warn(findings, "hull.map",
-         format_text("extends %.2f m, and the smallest hull at a loader is %.0f m long; is it in metres, and is all "
-                     "of the ship in it?",
-                     length, kShortestHull));
+         format_text(
+             "extends %.2f m, and the smallest hull at a loader is %.0f m long; is it in metres, and is all "
+             "of the ship in it?",
+             length, kShortestHull));
   } else if (size.x() < kLeastSlender * size.y()) {
-    warn(findings, "hull.map",
-         format_text("extends %.1f m along X and %.1f m along Y, and a hull is longer than wide; does X run along the "
-                     "quay, and is all of the ship in it?",
-                     size.x(), size.y()));
+    warn(
+        findings, "hull.map",
+        format_text(
+            "extends %.1f m along X and %.1f m along Y, and a hull is longer than wide; does X run along the "
+            "quay, and is all of the ship in it?",
+            size.x(), size.y()));
   }
 }
 
@@ -96,10 +100,11 @@ void judge_reference(const Cloud& cloud_H, const Eigen::Vector3d& reference, Fin
   const double distance = std::sqrt(nearest2);
   if (distance > kFarthestReference) {
     refuse(findings, "hull.reference_point",
-           format_text("lies %.1f m from the nearest point of the map: 0.1 deg, the error that an attitude may have, "
-                       "moves the hull by %.2f m against it, more than the 0.05 m of a position; choose a point of "
-                       "the map, at most %.1f m from it",
-                       distance, distance * kAttitude, kFarthestReference));
+           format_text(
+               "lies %.1f m from the nearest point of the map: 0.1 deg, the error that an attitude may have, "
+               "moves the hull by %.2f m against it, more than the 0.05 m of a position; choose a point of "
+               "the map, at most %.1f m from it",
+               distance, distance * kAttitude, kFarthestReference));
   }
 }
 
@@ -108,14 +113,16 @@ void judge_envelope(const Box& envelope, Findings& findings) {
     const double side = static_cast<double>(envelope.max[axis]) - static_cast<double>(envelope.min[axis]);
     if (side < 2.0 * kPosition) {
       refuse(findings, "hull.envelope",
-             format_text("is %.3f m wide along %s, and a position is known to 0.05 m either way: no pose would stay "
-                         "in it; give the displacements that tide, draft and moorings allow, %.1f m or more",
-                         side, kAxes[static_cast<std::size_t>(axis)], 2.0 * kPosition));
+             format_text(
+                 "is %.3f m wide along %s, and a position is known to 0.05 m either way: no pose would stay "
+                 "in it; give the displacements that tide, draft and moorings allow, %.1f m or more",
+                 side, kAxes[static_cast<std::size_t>(axis)], 2.0 * kPosition));
     }
   }
   if (!envelope.contains(Point::Zero())) {
     warn(findings, "hull.envelope",
-         "leaves out 0, 0, 0, where the ship lay when she was mapped; right only if she can never lie so again");
+         "leaves out 0, 0, 0, where the ship lay when she was mapped; right only if she can never lie so "
+         "again");
   }
 }
 
@@ -131,20 +138,22 @@ void judge_region(const Cloud& cloud_H, const HullConfig& hull, Findings& findin
   double nearest = std::numeric_limits<double>::infinity();
   for (const Point& p : cloud_H) {
     any_now = any_now || region.contains(p);
-    const auto turned =
-        static_cast<float>(kMostTurned * (p.cast<double>() - hull.reference_point).norm());
+    const auto turned = static_cast<float>(kMostTurned * (p.cast<double>() - hull.reference_point).norm());
     const Box reach{p + hull.envelope.min - Point::Constant(turned),
                     p + hull.envelope.max + Point::Constant(turned)};
     nearest = std::min(nearest, gap(reach, region).norm());
   }
   if (nearest > 0.0) {
-    refuse(findings, "hull.region",
-           format_text("no point of the map can come nearer to it than %.1f m, wherever in hull.envelope the ship lies: "
-                       "all of her would be left out; give the box in the world that she lies in, or [] for none",
-                       nearest));
+    refuse(
+        findings, "hull.region",
+        format_text(
+            "no point of the map can come nearer to it than %.1f m, wherever in hull.envelope the ship lies: "
+            "all of her would be left out; give the box in the world that she lies in, or [] for none",
+            nearest));
   } else if (!any_now) {
     warn(findings, "hull.region",
-         "holds no point of the map as it lies, only of a ship that has moved; is it given in the world's frame?");
+         "holds no point of the map as it lies, only of a ship that has moved; is it given in the world's "
+         "frame?");
   }
 }
 
@@ -186,29 +195,36 @@ void judge_surfaces(const HullMap& map, Findings& findings) {
     ++facing[static_cast<std::size_t>(plane.surface)];
   }
   if (fixed < kFewestSurfaces) {
-    warn(findings, "hull.map",
-         format_text("only %zu of its %zu surfaces are flat and fixed, and health needs %zu in view: it will not come; "
-                     "the points are %.2f m apart (a surface needs %.2f m or less, with noise below 2 cm): make a map "
-                     "of the hull with 5 cm voxels",
-                     fixed, surfels.size(), kFewestSurfaces, spacing_of(map), kSurfaceSpacing));
+    warn(
+        findings, "hull.map",
+        format_text(
+            "only %zu of its %zu surfaces are flat and fixed, and health needs %zu in view: it will not "
+            "come; "
+            "the points are %.2f m apart (a surface needs %.2f m or less, with noise below 2 cm): make a map "
+            "of the hull with 5 cm voxels",
+            fixed, surfels.size(), kFewestSurfaces, spacing_of(map), kSurfaceSpacing));
   } else if (const int free = free_directions(planes);
              free > 0 || map.planes().patches() < PlaneCovarianceEstimator::kFewestPatches) {
     warn(findings, "hull.map",
-         format_text("its surfaces leave %d of the six directions of a pose free (%zu flat pieces face along X, %zu "
-                     "along Y, %zu along Z, %zu aslant, in %u places, where %zu are needed): health will not come; map "
-                     "more of the hull, hatches above all",
-                     free, facing[0], facing[1], facing[2], facing[3], map.planes().patches(),
-                     PlaneCovarianceEstimator::kFewestPatches));
+         format_text(
+             "its surfaces leave %d of the six directions of a pose free (%zu flat pieces face along X, %zu "
+             "along Y, %zu along Z, %zu aslant, in %u places, where %zu are needed): health will not come; "
+             "map "
+             "more of the hull, hatches above all",
+             free, facing[0], facing[1], facing[2], facing[3], map.planes().patches(),
+             PlaneCovarianceEstimator::kFewestPatches));
   }
 }
 
 void judge_rims(const HullMap& map, Findings& findings) {
   const auto& rims = map.rims();
   if (std::none_of(rims.begin(), rims.end(), [](const RimPoint& rim) { return rim.is_measured(); })) {
-    warn(findings, "hull.map",
-         format_text("no coaming's top was found in it, so that little tells this ship from her sisters; map her with "
-                     "a hatch open and points %.3f m apart or less (they are %.3f m)",
-                     kRimSpacing, spacing_of(map)));
+    warn(
+        findings, "hull.map",
+        format_text(
+            "no coaming's top was found in it, so that little tells this ship from her sisters; map her with "
+            "a hatch open and points %.3f m apart or less (they are %.3f m)",
+            kRimSpacing, spacing_of(map)));
   }
 }
 
@@ -219,8 +235,8 @@ std::vector<MapFinding> judge_cloud(const Cloud& cloud_H, const TrackerConfig& c
   const auto fewest = static_cast<std::size_t>(config.health.min_matched);
   if (cloud_H.size() < fewest) {
     refuse(findings, "hull.map",
-           "has " + counted(cloud_H.size(), "point") + ", fewer than health.min_matched = " + std::to_string(fewest) +
-               "; no scan could ever match it: make a denser map");
+           "has " + counted(cloud_H.size(), "point") + ", fewer than health.min_matched = " +
+               std::to_string(fewest) + "; no scan could ever match it: make a denser map");
   }
   judge_size(bounding_box(cloud_H), findings);
   judge_reference(cloud_H, config.hull.reference_point, findings);
@@ -234,11 +250,13 @@ std::vector<MapFinding> judge_cloud(const Cloud& cloud_H, const TrackerConfig& c
 std::vector<MapFinding> judge_map(const HullMap& map) {
   Findings findings;
   if (map.subset_H().size() < kFewestSurfaces) {
-    refuse(findings, "hull.map",
-           format_text("all of its %zu points lie in %zu cubes of %.1f m, and %zu are the fewest that a pose could be "
-                       "judged by; make a map of the hull, in metres",
-                       map.cloud_H().size(), map.subset_H().size(), static_cast<double>(HullMap::kSubsetVoxel),
-                       kFewestSurfaces));
+    refuse(
+        findings, "hull.map",
+        format_text(
+            "all of its %zu points lie in %zu cubes of %.1f m, and %zu are the fewest that a pose could be "
+            "judged by; make a map of the hull, in metres",
+            map.cloud_H().size(), map.subset_H().size(), static_cast<double>(HullMap::kSubsetVoxel),
+            kFewestSurfaces));
     return findings;
   }
   judge_surfaces(map, findings);
@@ -249,7 +267,8 @@ std::vector<MapFinding> judge_map(const HullMap& map) {
 }
 
 bool is_refused(const std::vector<MapFinding>& findings) {
-  return std::any_of(findings.begin(), findings.end(), [](const MapFinding& finding) { return finding.refused; });
+  return std::any_of(findings.begin(), findings.end(),
+                     [](const MapFinding& finding) { return finding.refused; });
 }
 
 }  // namespace hulltrack

@@ -12,9 +12,10 @@ namespace {
 
 std::string about(const std::filesystem::path& file, const StrayPoints& strays, std::size_t all) {
   return file.string() +
-         format_text(": %zu of its %s lie %.0f to %.0f m from all others and were left out; if they are stray "
-                     "returns, delete them there, and if they are ship, map what is between",
-                     strays.count, counted(all, "point").c_str(), strays.nearest, strays.farthest);
+         format_text(
+             ": %zu of its %s lie %.0f to %.0f m from all others and were left out; if they are stray "
+             "returns, delete them there, and if they are ship, map what is between",
+             strays.count, counted(all, "point").c_str(), strays.nearest, strays.farthest);
 }
 
 }  // namespace

@@ -96,8 +96,8 @@ class FileReader {
 
   void read_map(const Config& config) {
     begins_(PreparationStep::map, 0);
-    const LoadedMap loaded = load_map(config.map_file, config.tracker,
-                                      [this] { begins_(PreparationStep::map_making, 0); });
+    const LoadedMap loaded =
+        load_map(config.map_file, config.tracker, [this] { begins_(PreparationStep::map_making, 0); });
     for (const MapFinding& finding : loaded.findings) {
       if (reading_.bad_keys.contains(finding.key)) {
         continue;  // its value here is the default, not the site's

@@ -1,7 +1,8 @@
 // Builds and uses the maps of N clouds that are no ships: map_clouds [N [MOST [SEED]]].
 //
-// Clouds of 50 to MOST points (default 300 clouds of 3000, seed 1), each from a seed of its own, which is printed
-// with a cloud that cannot be used. Meant for a build with sanitizers: scripts/map-clouds. Exit 0 or 1.
+// Clouds of 50 to MOST points (default 300 clouds of 3000, seed 1), each from a seed of its own, which is
+// printed with a cloud that cannot be used. Meant for a build with sanitizers: scripts/map-clouds. Exit 0
+// or 1.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -19,8 +20,8 @@ Cloud cloud_of(unsigned seed, std::size_t most) {
   const std::size_t points = 50 + random() % (most - 49);
   Cloud cloud;
   while (cloud.size() < points) {
-    for (const hulltrack::Point& p :
-         hulltrack::test::any_cloud(hulltrack::test::any_bytes(random, 1 + random() % 8), points - cloud.size())) {
+    for (const hulltrack::Point& p : hulltrack::test::any_cloud(
+             hulltrack::test::any_bytes(random, 1 + random() % 8), points - cloud.size())) {
       cloud.push_back(p);
     }
   }

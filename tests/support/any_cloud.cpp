@@ -104,7 +104,8 @@ class Maker {
       case 1: {
         const Point corner = bytes_.place();
         const float length = bytes_.size(60.0F);
-        add_sheet(corner, {length, 0.1F * bytes_.size(10.0F), 0.0F}, {0.0F, bytes_.size(30.0F), bytes_.size(3.0F)}, step);
+        add_sheet(corner, {length, 0.1F * bytes_.size(10.0F), 0.0F},
+                  {0.0F, bytes_.size(30.0F), bytes_.size(3.0F)}, step);
         break;
       }
       case 2: {
@@ -135,7 +136,8 @@ class Maker {
       }
       case 6: {
         const float scale = kFarthest / 32'768.0F;
-        add(scale * Point(bytes_.take<std::int16_t>(), bytes_.take<std::int16_t>(), bytes_.take<std::int16_t>()));
+        add(scale *
+            Point(bytes_.take<std::int16_t>(), bytes_.take<std::int16_t>(), bytes_.take<std::int16_t>()));
         break;
       }
       case 7: {
@@ -178,10 +180,9 @@ void look_through(const HullMap& map) {
     require(x != 0 || worth[OccupancyGrid::kUp] == 2 * cells.size(), "the map does not occupy its own cells");
   }
   std::size_t seen = 0;
-  map.occluders_H().sight_within({.range = 50.0F}, Pose::Identity(),
-                                 [&seen](const Sightings& from_L, std::size_t i) {
-                                   seen += from_L.range2[i] >= 0.0F ? 1 : 0;
-                                 });
+  map.occluders_H().sight_within(
+      {.range = 50.0F}, Pose::Identity(),
+      [&seen](const Sightings& from_L, std::size_t i) { seen += from_L.range2[i] >= 0.0F ? 1 : 0; });
   require(seen <= map.occluders_H().points().size(), "more is seen than is there");
   for (const Surfel& surfel : map.surfels()) {
     require(surfel.normal_H.allFinite() && surfel.centre_H.allFinite(), "a surfel that is none");

@@ -42,11 +42,13 @@ Hull uneasy(std::mt19937& random) {
 
 Hull quiet() {
   return [](double t) {
-    return hull_pose({0.01 * std::sin(kTau * t / 60.0), 0.0, 0.0}, {0.02 * std::sin(kTau * t / 9.0), 0.0, 0.0});
+    return hull_pose({0.01 * std::sin(kTau * t / 60.0), 0.0, 0.0},
+                     {0.02 * std::sin(kTau * t / 9.0), 0.0, 0.0});
   };
 }
 
-/// The loader at work, frame by frame: one joint after the other moves to a place inside its range, and rests.
+/// The loader at work, frame by frame: one joint after the other moves to a place inside its range, and
+/// rests.
 class Loader {
  public:
   Loader(unsigned seed, Hull hull) : random_(seed), hull_(std::move(hull)), witness_(quay_machine()) {}
@@ -93,7 +95,8 @@ class Loader {
     const double from = moving_ == 0 ? now_.d_x : moving_ == 1 ? now_.theta_r : now_.theta_p;
     const auto& [low, high] = ranges.at(static_cast<std::size_t>(moving_));
     const double most = longest.at(static_cast<std::size_t>(moving_));
-    target_ = std::uniform_real_distribution<double>(std::max(low, from - most), std::min(high, from + most))(random_);
+    target_ = std::uniform_real_distribution<double>(std::max(low, from - most),
+                                                     std::min(high, from + most))(random_);
   }
 
   std::mt19937 random_;
@@ -114,11 +117,16 @@ TEST(JointMotion, AnHonestMachineIsNotContradictedByWhateverItsShipDoes) {
     const std::vector<std::pair<const char*, Hull>> hulls = {
         {"quiet", quiet()},
         {"uneasy", swell},
-        {"sinks", [&](double t) { return hull_pose({0.0, 0.0, -0.002 * t}, {0.0, 0.0, 0.0}) * swell(t); }},
-        {"is warped", [&](double t) {
+        {"sinks",
+         [&](double t) {
+           return hull_pose({0.0, 0.0, -0.002 * t}, {0.0, 0.0, 0.0}) * swell(t);
+         }},
+        {"is warped",
+         [&](double t) {
            return hull_pose({0.2 * std::clamp(t - 30.0, 0.0, 150.0), 0.0, 0.0}, {0.0, 0.0, 0.0}) * swell(t);
          }},
-        {"is jerked", [&](double t) {
+        {"is jerked",
+         [&](double t) {
            const double s = std::clamp((std::fmod(t, 120.0) - 20.0) / 10.0, 0.0, 1.0);
            return hull_pose({s, 0.0, 0.0}, {0.0, 0.0, 0.0}) * swell(t);
          }},
@@ -134,8 +142,13 @@ TEST(JointMotion, AnHonestMachineIsNotContradictedByWhateverItsShipDoes) {
 
 TEST(JointMotion, AWrongSignIsNamedAfterAFewMoves) {
   const std::vector<std::pair<const char*, std::function<Joints(const Joints&)>>> signs = {
-      {"travel", [](const Joints& q) { return Joints{-q.d_x, q.theta_r, q.theta_p}; }},
-      {"luff", [](const Joints& q) { return Joints{q.d_x, q.theta_r, -q.theta_p}; }}};
+      {"travel",
+       [](const Joints& q) {
+         return Joints{-q.d_x, q.theta_r, q.theta_p};
+       }},
+      {"luff", [](const Joints& q) {
+         return Joints{q.d_x, q.theta_r, -q.theta_p};
+       }}};
   for (unsigned seed = 1; seed <= 5; ++seed) {
     std::mt19937 random(seed);
     for (const auto& [joint, reads] : signs) {
@@ -160,7 +173,8 @@ TEST(JointMotion, AMachineThatStandsGivesNoVerdict) {
   JointMotionWitness witness(quay_machine());
   const MachineStand stand = stand_at({0.0, radians(90.0), 0.0});
   for (int i = 0; i < 3000; ++i) {
-    witness.add(MeasurementTime{milliseconds(100) * i}, stand, {0.01 * i, 0.0, 0.0}, Eigen::Matrix3d::Identity());
+    witness.add(MeasurementTime{milliseconds(100) * i}, stand, {0.01 * i, 0.0, 0.0},
+                Eigen::Matrix3d::Identity());
   }
   EXPECT_EQ(witness.contradiction(), "");
   EXPECT_EQ(witness.evidence(JointName::travel).moves, 0U);

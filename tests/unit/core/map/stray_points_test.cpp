@@ -27,7 +27,8 @@ TEST(StrayPoints, OfAShipInOnePieceEveryPointStaysInItsPlace) {
 
 TEST(StrayPoints, FewPointsFarAwayAreLeftOutWhereverTheyStandInTheFile) {
   const Cloud ship = deck({100.0F, 200.0F, 0.0F});
-  for (const Point& stray : {Point(0.0F, 0.0F, 0.0F), Point(9999.0F, 9999.0F, 9999.0F), Point(120.0F, 205.0F, 90.0F)}) {
+  for (const Point& stray :
+       {Point(0.0F, 0.0F, 0.0F), Point(9999.0F, 9999.0F, 9999.0F), Point(120.0F, 205.0F, 90.0F)}) {
     for (const std::size_t at : {std::size_t{0}, ship.size() / 2, ship.size()}) {
       Cloud cloud = ship;
       cloud.insert(cloud.begin() + static_cast<std::ptrdiff_t>(at), stray);

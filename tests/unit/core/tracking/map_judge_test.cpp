@@ -111,7 +111,8 @@ TEST(MapJudge, TheReferenceIsNoFartherFromTheShipThanItsAttitudeAllows) {
     const std::string words = told(judge_cloud(deck, above), "hull.reference_point");
     EXPECT_EQ(words.empty(), z < 28.65) << words;
     if (z > 100.0) {
-      EXPECT_THAT(words, AllOf(HasSubstr("refused: lies 500.0 m from the nearest point"), HasSubstr("0.87 m")));
+      EXPECT_THAT(words,
+                  AllOf(HasSubstr("refused: lies 500.0 m from the nearest point"), HasSubstr("0.87 m")));
     }
   }
 }
@@ -121,7 +122,8 @@ TEST(MapJudge, AnEnvelopeHasRoomForTheErrorOfAPose) {
   narrow.hull.envelope = Box{Point::Zero(), Point::Zero()};
   const auto findings = judge_cloud(ship(), narrow);
   for (const char* axis : {"X", "Y", "Z"}) {
-    EXPECT_THAT(told(findings, "hull.envelope"), HasSubstr("refused: is 0.000 m wide along " + std::string(axis)));
+    EXPECT_THAT(told(findings, "hull.envelope"),
+                HasSubstr("refused: is 0.000 m wide along " + std::string(axis)));
   }
   narrow.hull.envelope = Box{{-1.0F, -0.06F, -1.0F}, {1.0F, 0.05F, 1.0F}};
   EXPECT_EQ(told(judge_cloud(ship(), narrow), "hull.envelope"), "");
@@ -141,7 +143,8 @@ TEST(MapJudge, ARegionThatNoPoseBringsTheShipIntoIsRefused) {
               HasSubstr("refused: no point of the map can come nearer to it than 938.4 m"))
       << "1000 - 40 - 15 m, less what a turn moves a point 41 m from the reference by";
   with_region.hull.region = Box{{50.0F, -100.0F, -100.0F}, {1100.0F, 100.0F, 100.0F}};
-  EXPECT_THAT(told(judge_cloud(deck, with_region), "hull.region"), HasSubstr("warning: holds no point of the map"));
+  EXPECT_THAT(told(judge_cloud(deck, with_region), "hull.region"),
+              HasSubstr("warning: holds no point of the map"));
   with_region.hull.region = Box{{30.0F, -100.0F, -100.0F}, {1100.0F, 100.0F, 100.0F}};
   EXPECT_EQ(told(judge_cloud(deck, with_region), "hull.region"), "");
 }
@@ -157,23 +160,28 @@ TEST(MapJudge, WhatHasNoSurfaceIsWarnedOf) {
   for (int i = 0; i < 10'000; ++i) {
     line.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
   }
-  EXPECT_THAT(told(judge_map(HullMap(line)), "hull.map"), HasSubstr("warning: only 0 of its 250 surfaces are flat"));
+  EXPECT_THAT(told(judge_map(HullMap(line)), "hull.map"),
+              HasSubstr("warning: only 0 of its 250 surfaces are flat"));
   std::mt19937 random(1);
   std::uniform_real_distribution<float> at(0.0F, 30.0F);
   Cloud dust;
   for (int i = 0; i < 400; ++i) {
     dust.emplace_back(at(random), at(random), at(random));
   }
-  EXPECT_THAT(told(judge_map(HullMap(dust)), "hull.map"), HasSubstr("warning: only 0 of its 400 surfaces are flat"));
+  EXPECT_THAT(told(judge_map(HullMap(dust)), "hull.map"),
+              HasSubstr("warning: only 0 of its 400 surfaces are flat"));
 }
 
 TEST(MapJudge, WhatLeavesDirectionsFreeIsWarnedOf) {
-  EXPECT_THAT(told(judge_map(HullMap(box({40.0F, 20.0F, 0.0F}, 0.1F))), "hull.map"),
-              AllOf(HasSubstr("warning: its surfaces leave 3 of the six directions of a pose free (0 flat pieces face "
-                              "along X, 0 along Y, "),
-                    HasSubstr("along Z, 0 aslant")));
+  EXPECT_THAT(
+      told(judge_map(HullMap(box({40.0F, 20.0F, 0.0F}, 0.1F))), "hull.map"),
+      AllOf(
+          HasSubstr("warning: its surfaces leave 3 of the six directions of a pose free (0 flat pieces face "
+                    "along X, 0 along Y, "),
+          HasSubstr("along Z, 0 aslant")));
   EXPECT_THAT(told(judge_map(HullMap(box({2.0F, 2.0F, 2.0F}, 0.05F))), "hull.map"),
-              HasSubstr("3 of the six directions")) << "a cube so small that no turn is held";
+              HasSubstr("3 of the six directions"))
+      << "a cube so small that no turn is held";
 }
 
 TEST(MapJudge, AShipWithoutCoamingsIsWarnedOf) {
