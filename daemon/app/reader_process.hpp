@@ -26,7 +26,7 @@ struct ReaderSetup {
   /// that the reader hands over (12 of the 60 bytes that it needs a point, M / 5) and either the reader or
   /// the same work done again in the service (M): 2.2 M, and 64 MB of all else, in 2048 MB.
   std::size_t memory_mb = 900;
-  /// Ten times what a map that fills the memory takes (15 million points, 6 s).
+  /// Seven times what a map that fills the memory takes (14 million points, 6 to 9 s).
   std::chrono::seconds cpu{60};
   /// Three times that: it may run at the lowest priority, and a disk may be slow.
   std::chrono::seconds wall{180};
