@@ -52,7 +52,7 @@ class TrackThreadTest : public testing::Test {
   Pulse pulse{"track", std::chrono::seconds(1), steady_now()};
   MeasurementTime start = live_measurement_time(steady_now());
   std::uint64_t seen = 0;
-  TrackThread thread{prepared.config, prepared.map, exchange, pulse};
+  TrackThread thread{prepared.config, prepared.map, prepared.quay, exchange, pulse};
   GuardedThread runner{"track", [this](std::stop_token stop) { thread.run(stop); },
                        [](const std::string&, const std::string& what) { ADD_FAILURE() << what; },
                        [this] { exchange.track_bell.ring(); }};
