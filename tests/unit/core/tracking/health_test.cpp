@@ -89,7 +89,7 @@ const std::vector<Case>& cases() {
       {"jump", [](Evidence& e) { e.displacement.x() = 1.5; }, State::degraded, fault::implausible},
       {"turn",
        [](Evidence& e) {
-         e.rotation = rotation_from_rpy({0, 0, radians(5.0)});
+         e.rotation = rotation_from_rpy({0, 0, radians(3.0)});
        },
        State::degraded, fault::implausible},
       {"joints do not bracket", [](Evidence& e) { e.bracketed = e.registered = false; }, State::fault,

@@ -344,7 +344,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"section_near", other("[trakcing]\nvoxel_size = 1\n"), ":1: trakcing",
               "unknown section; did you mean tracking?"},
         Wrong{"section_far", other("[weather]\nrain = true\n"), ":1: weather",
-              "unknown section; known here: plc, machine, hull, tracking, health, log, lidar"},
+              "unknown section; known here: plc, machine, hull, quay, tracking, health, log, lidar"},
         Wrong{"lidars_near", other("[[lidars]]\nmodel = \"ouster_os\"\n"), ":1: lidars",
               "unknown section; did you mean lidar?"},
         Wrong{"host_missing", "[plc]\nport = 5\n" + kLidar + kHull, ":1: plc.host",
