@@ -40,7 +40,7 @@ def merged_config(recordings):
 def merge(recordings, out):
     out.mkdir()
     first = recordings[0]
-    for name in ("plc.csv", "truth.csv", "hull.pcd"):
+    for name in ("plc.csv", "truth.csv", "hull.pcd", "quay.pcd"):
         shutil.copy(first / name, out)
     for other in recordings[1:]:
         for name in ("plc.csv", "truth.csv"):
