@@ -26,7 +26,8 @@ Eigen::MatrixXd along(const Misplacement& seen, const std::vector<Twist>& twists
   return columns;
 }
 
-JointDoubt doubt_joint(const Eigen::VectorXd& h, const Eigen::VectorXd& y, const Eigen::MatrixXd& S_inverse,
+/// How much of `h` there is in `y`, and how much of that wear can be.
+JointDoubt doubt_along(const Eigen::VectorXd& h, const Eigen::VectorXd& y, const Eigen::MatrixXd& S_inverse,
                        const Eigen::MatrixXd& G, const Eigen::VectorXd& noise) {
   const Eigen::VectorXd weights = S_inverse * h;
   const double worth = h.dot(weights);
@@ -67,7 +68,7 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
   for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
     const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
     JointDoubt& here = doubt.joints.at(static_cast<std::size_t>(joint));
-    here = doubt_joint(h, y, S_inverse, G, noise);
+    here = doubt_along(h, y, S_inverse, G, noise);
     if (std::abs(here.reads_too_much) > here.hidden && here.gain > best) {
       best = here.gain;
       doubt.accused = joint;
@@ -79,6 +80,28 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
   doubt.most_strain = std::min(static_cast<double>(G.cols()), 3.0 * static_cast<double>(n));
   doubt.beyond_class = doubt.accused || doubt.strain > doubt.most_strain;
   return doubt;
+}
+
+JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
+                         const Misplacement& at_rest) {
+  const auto n = static_cast<Eigen::Index>(seen.measured.size());
+  const Twist since = seen.twist - at_rest.about(seen.centre_W);
+  double rest_sigma = 0.0;  // the largest: directions of the two differ
+  for (const Misplacement::Measurement& measured : at_rest.measured) {
+    rest_sigma = std::max(rest_sigma, measured.sigma);
+  }
+  Eigen::VectorXd y(n);
+  Eigen::VectorXd noise(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Misplacement::Measurement& measured = seen.measured[static_cast<std::size_t>(i)];
+    y[i] = measured.direction.dot(since);
+    noise[i] = std::hypot(measured.sigma, rest_sigma);
+  }
+  const Eigen::MatrixXd G = along(seen, fast_wear_twists(machine, stand, seen.centre_W));
+  Eigen::MatrixXd S = G * G.transpose();
+  S.diagonal() += noise.cwiseAbs2();
+  return doubt_along(along(seen, {lateness_twist(machine, stand, seen.centre_W)}), y,
+                     S.ldlt().solve(Eigen::MatrixXd::Identity(n, n)), G, noise);
 }
 
 std::string accusation(JointName joint, double amount) {

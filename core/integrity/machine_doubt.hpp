@@ -38,6 +38,12 @@ struct MachineDoubt {
 [[nodiscard]] MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
                                          const Misplacement& seen);
 
+/// The same of joint values that are older than they are taken to be: what of the misplacement has come since
+/// the machine stood (`at_rest`), held against what wear can change meanwhile. Both hold all six directions.
+/// Amounts in s.
+[[nodiscard]] JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand,
+                                       const Misplacement& seen, const Misplacement& at_rest);
+
 /// In words with figures, why a joint is accused: it reads `amount` (m, rad) too much.
 [[nodiscard]] std::string accusation(JointName joint, double amount);
 

@@ -61,31 +61,38 @@ Twist joint_twist(const MachineConfig& machine, const MachineStand& stand, Joint
   return Twist::Zero();
 }
 
+Twist lateness_twist(const MachineConfig& machine, const MachineStand& stand,
+                     const Eigen::Vector3d& centre_W) {
+  return -stand.rate.d_x * joint_twist(machine, stand, JointName::travel, centre_W) -
+         stand.rate.theta_r * joint_twist(machine, stand, JointName::slew, centre_W) -
+         stand.rate.theta_p * joint_twist(machine, stand, JointName::luff, centre_W);
+}
+
+std::vector<Twist> fast_wear_twists(const MachineConfig& machine, const MachineStand& stand,
+                                    const Eigen::Vector3d& centre_W) {
+  // How far the boom's end turns when it sags depends on the boom: the two count apart.
+  const Axes axes = axes_of(machine, stand.joints);
+  const double boom =
+      std::max(kShortestBoom, (stand.sensor_W - axes.T_W_luff.translation()).head<2>().norm());
+  return {kBacklash * joint_twist(machine, stand, JointName::slew, centre_W),
+          kBacklash * joint_twist(machine, stand, JointName::luff, centre_W),
+          kLatency * lateness_twist(machine, stand, centre_W), kBoomSag * shift(Eigen::Vector3d::UnitZ()),
+          kTurnOfSag * kBoomSag / boom * about(axes.T_W_luff.linear().col(1), stand.sensor_W, centre_W)};
+}
+
 std::vector<Twist> wear_twists(const MachineConfig& machine, const MachineStand& stand,
                                const Eigen::Vector3d& centre_W) {
   const Twist travel = joint_twist(machine, stand, JointName::travel, centre_W);
-  const Twist slew = joint_twist(machine, stand, JointName::slew, centre_W);
-  const Twist luff = joint_twist(machine, stand, JointName::luff, centre_W);
-  std::vector<Twist> twists = {
-      kTravelDrift * travel,
-      kTravelSlip * stand.joints.d_x * travel,
-      kAngleDrift * slew,
-      kBacklash * slew,
-      kAngleDrift * luff,
-      kBacklash * luff,
-      kLatency * (stand.rate.d_x * travel + stand.rate.theta_r * slew + stand.rate.theta_p * luff)};
+  std::vector<Twist> twists = fast_wear_twists(machine, stand, centre_W);
+  twists.push_back(kTravelDrift * travel);
+  twists.push_back(kTravelSlip * stand.joints.d_x * travel);
+  twists.push_back(kAngleDrift * joint_twist(machine, stand, JointName::slew, centre_W));
+  twists.push_back(kAngleDrift * joint_twist(machine, stand, JointName::luff, centre_W));
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
     twists.push_back(kMountTurn * about(axis, stand.sensor_W, centre_W));
     twists.push_back(kMountShift * shift(axis));
   }
-  // How far the boom's end turns when it sags depends on the boom: the two count apart.
-  const Axes axes = axes_of(machine, stand.joints);
-  const double boom =
-      std::max(kShortestBoom, (stand.sensor_W - axes.T_W_luff.translation()).head<2>().norm());
-  twists.push_back(kBoomSag * shift(Eigen::Vector3d::UnitZ()));
-  twists.push_back(kTurnOfSag * kBoomSag / boom *
-                   about(axes.T_W_luff.linear().col(1), stand.sensor_W, centre_W));
   return twists;
 }
 

@@ -33,4 +33,12 @@ struct MachineStand {
 [[nodiscard]] std::vector<Twist> wear_twists(const MachineConfig& machine, const MachineStand& stand,
                                              const Eigen::Vector3d& centre_W);
 
+/// What of it can change within seconds: backlash, the sag of a boom that is loaded, latency.
+[[nodiscard]] std::vector<Twist> fast_wear_twists(const MachineConfig& machine, const MachineStand& stand,
+                                                  const Eigen::Vector3d& centre_W);
+
+/// Twist about `centre_W` of joint values that are a second older than they are taken to be.
+[[nodiscard]] Twist lateness_twist(const MachineConfig& machine, const MachineStand& stand,
+                                   const Eigen::Vector3d& centre_W);
+
 }  // namespace hulltrack

@@ -10,6 +10,12 @@ namespace {
 
 constexpr int kChargesNeeded = 3;
 
+// Slower than this a joint stands, m/s and rad/s: 100 ms of lateness are 3 mm or 0.006 deg.
+constexpr double kStands = 0.03;
+const double kStandsAngle = radians(0.06);
+// As long as observations are kept at 10 Hz, and half as long again for a boom that swings out.
+constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
+
 // Of returns near a plane most are on it; where nothing is in its place a sixth agrees by chance: of offsets
 // spread over the gate those within 10 cm. The limit is in the middle; at 60 returns it is three sigma off
 // either.
@@ -52,6 +58,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   remember(sighting);
   seen_ = find_misplacement(sighting.observations);
   Verdict verdict = judge(stand);
+  note_rest(time, stand, verdict);
   const bool acquitted = !standing_ || acquits(verdict);
   charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : verdict.known ? 0 : charges_in_a_row_;
   if (verdict.charge && charges_in_a_row_ >= kChargesNeeded) {
@@ -82,8 +89,40 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
     verdict.charge =
         Charge{describe(verdict.doubt, seen_), joint,
                joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0};
+  } else {
+    verdict.charge = charge_of_lateness(stand);
   }
   return verdict;
+}
+
+/// Joint values that come late put the machine where it was, but only while it moves.
+std::optional<MachineWitness::Charge> MachineWitness::charge_of_lateness(const MachineStand& stand) const {
+  if (!at_rest_ || !seen_.holds_all()) {
+    return std::nullopt;
+  }
+  const JointDoubt late = doubt_latency(machine_, stand, seen_, *at_rest_);
+  if (!(std::abs(late.reads_too_much) > late.hidden)) {
+    return std::nullopt;
+  }
+  return Charge{
+      format_text("the quay moves with the machine as if joint values were %.0f ms %s than plc.latency_ms "
+                  "says",
+                  1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
+      std::nullopt, 0.0};
+}
+
+/// A sight of the quay is of a machine that stands once all of its observations are.
+void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict) {
+  const Joints& rate = stand.rate;
+  if (std::abs(rate.d_x) > kStands || std::abs(rate.theta_r) > kStandsAngle ||
+      std::abs(rate.theta_p) > kStandsAngle) {
+    standing_since_.reset();
+    return;
+  }
+  standing_since_ = standing_since_.value_or(time);
+  if (time - *standing_since_ >= kAtRest && verdict.known && !verdict.charge && seen_.holds_all()) {
+    at_rest_ = seen_;
+  }
 }
 
 /// Would this frame have shown what the machine is charged with, and does not?
@@ -119,6 +158,8 @@ std::string MachineWitness::seen_through() const {
 }
 
 void MachineWitness::forget_sight() {
+  standing_since_.reset();
+  at_rest_.reset();
   sight_.forget();
   planes_ = {};
   charges_in_a_row_ = 0;

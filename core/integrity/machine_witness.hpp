@@ -55,6 +55,8 @@ class MachineWitness {
   };
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
   [[nodiscard]] bool acquits(const Verdict& verdict) const;
+  [[nodiscard]] std::optional<Charge> charge_of_lateness(const MachineStand& stand) const;
+  void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();
   [[nodiscard]] std::string seen_through() const;
@@ -72,6 +74,9 @@ class MachineWitness {
     double seen_through = 0.0;
   };
   std::array<Memory, QuayMap::kClasses> planes_;
+  /// The quay as it was seen when the machine stood last.
+  std::optional<MeasurementTime> standing_since_;
+  std::optional<Misplacement> at_rest_;
   int charges_in_a_row_ = 0;
   std::optional<Charge> standing_;
 };

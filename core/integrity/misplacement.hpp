@@ -29,6 +29,12 @@ struct Misplacement {
   std::vector<Measurement> measured;                   // six when all axes are held
   std::uint32_t observations = 0;
   std::uint32_t agreeing = 0;  // of them: within 10 cm of where the twist puts them
+  /// The twist about another point. Meaningful where all directions are held.
+  [[nodiscard]] Twist about(const Eigen::Vector3d& point_W) const {
+    Twist moved = twist;
+    moved.tail<3>() += twist.head<3>().cross(point_W - centre_W);
+    return moved;
+  }
   [[nodiscard]] bool holds_all() const { return measured.size() == 6; }
 };
 

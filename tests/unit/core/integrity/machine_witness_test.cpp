@@ -28,14 +28,15 @@ class Frames {
   explicit Frames(std::shared_ptr<const QuayMap> map = quay_map(), const QuayConfig& quay = {})
       : witness_(quay, std::move(map), quay_machine(), kRegion) {}
 
-  MachineFinding run(int frames, const Joints& too_much,
-                     const std::vector<std::size_t>& surfaces = {0, 1, 2}) {
+  MachineFinding run(int frames, const Joints& too_much, const std::vector<std::size_t>& surfaces = {0, 1, 2},
+                     const Joints& rate = {}) {
     MachineFinding finding;
     for (int i = 0; i < frames; ++i) {
       const Joints reported{kWorking.d_x + too_much.d_x, kWorking.theta_r + too_much.theta_r,
                             kWorking.theta_p + too_much.theta_p};
-      const QuayFrame frame =
+      QuayFrame frame =
           quay_frame(reported, misplaced(reported, kWorking), static_cast<unsigned>(frame_), 400, surfaces);
+      frame.stand.rate = rate;
       finding =
           witness_.look(MeasurementTime{milliseconds(100) * frame_++}, frame.scan, frame.views, frame.stand);
     }
@@ -93,6 +94,20 @@ TEST(MachineWitness, AReacquireEdgeForgetsButSwitchesNothingOff) {
   frames.witness().forget();
   EXPECT_EQ(frames.run(1, {0.3, 0.0, 0.0}).faults, 0);
   EXPECT_NE(frames.run(10, {0.3, 0.0, 0.0}).faults, 0);
+}
+
+TEST(MachineWitness, JointValuesThatComeLateShowWhileTheMachineTravels) {
+  const Joints travelling{0.4, 0.0, 0.0};
+  const auto late_by = [](double seconds) { return Joints{-0.4 * seconds, 0.0, 0.0}; };
+  Frames honest;
+  honest.run(20, {});
+  EXPECT_EQ(honest.run(40, late_by(0.01), {0, 1, 2}, travelling).faults, 0) << "within the class";
+  Frames frames;
+  frames.run(20, {});
+  const MachineFinding finding = frames.run(20, late_by(0.25), {0, 1, 2}, travelling);
+  EXPECT_EQ(finding.faults, fault::plc_value);
+  EXPECT_NE(finding.reason.find("older than plc.latency_ms"), std::string::npos) << finding.reason;
+  EXPECT_EQ(frames.run(20, {}).faults, 0) << "at rest the joints are right";
 }
 
 TEST(MachineWitness, AScanWithoutTheQuayChangesNothing) {
