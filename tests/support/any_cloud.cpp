@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/map/hull_map.hpp"
+#include "core/map/quay_map.hpp"
 #include "core/map/stray_points.hpp"
 #include "core/tracking/map_judge.hpp"
 
@@ -210,6 +211,8 @@ std::vector<std::uint8_t> any_bytes(std::mt19937& random, std::size_t things) {
 }
 
 void use_as_map(Cloud cloud) {
+  const QuayMap quay(cloud);  // any cloud may be named as the quay's as well
+  require(quay.planes().size() == quay.tree().size(), "a plane of the quay has no middle");
   static_cast<void>(take_out_strays(cloud));
   TrackerConfig config;
   config.hull.region = Box{{-100.0F, -20.0F, -10.0F}, {100.0F, 40.0F, 30.0F}};
