@@ -1,5 +1,6 @@
 #include "core/integrity/machine_witness.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -21,6 +22,9 @@ constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
 // either.
 constexpr double kLeastShare = 0.5;
 constexpr std::uint32_t kFewestObservations = 60;
+// With eight in ten of the returns near planes on them, lorries and people among them, the quay is surely
+// found.
+constexpr double kSureShare = 0.8;
 
 // A plane that is where it should be is seen through only when what stood there has left: a lorry, a stack of
 // covers. Half of a class of surfaces does not leave within a tide. Where all is in place one plane in a
@@ -73,23 +77,25 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
 
 MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   Verdict verdict;
-  if (std::string through = seen_through(); !through.empty()) {
-    verdict.known = true;
-    verdict.charge = Charge{std::move(through), std::nullopt, 0.0};
-    return verdict;
-  }
   const bool few = seen_.observations < kFewestObservations || seen_.measured.empty();
-  if (few || double(seen_.agreeing) < kLeastShare * double(seen_.observations)) {
-    return verdict;  // none of the quay in view, or other things lie there
+  const double agreeing = double(seen_.agreeing) / std::max(1.0, double(seen_.observations));
+  const bool found = !few && agreeing >= kLeastShare;
+  if (found) {
+    verdict.doubt = doubt_machine(machine_, stand, seen_);
   }
-  verdict.known = true;
-  verdict.doubt = doubt_machine(machine_, stand, seen_);
-  if (verdict.doubt.beyond_class) {
+  // A quay that is found in its place on all axes is in its place: what is seen through has left.
+  const bool surely_in_place =
+      found && !verdict.doubt.beyond_class && seen_.holds_all() && agreeing >= kSureShare;
+  std::string through = surely_in_place ? std::string{} : seen_through();
+  verdict.known = found || !through.empty();
+  if (!through.empty()) {
+    verdict.charge = Charge{std::move(through), std::nullopt, 0.0};
+  } else if (found && verdict.doubt.beyond_class) {
     const auto& joint = verdict.doubt.accused;
     verdict.charge =
         Charge{describe(verdict.doubt, seen_), joint,
                joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0};
-  } else {
+  } else if (found) {
     verdict.charge = charge_of_lateness(stand);
   }
   return verdict;

@@ -81,6 +81,21 @@ TEST(MachineWitness, AMachineThatIsMetresOffSeesThroughTheQuaysWalls) {
   EXPECT_NE(finding.reason.find("transverse"), std::string::npos) << finding.reason;
 }
 
+TEST(MachineWitness, ALorryThatHasLeftTheQuayIsNoFaultOfTheMachine) {
+  // A wall of the map is gone: every ray goes through it.
+  Cloud with_lorry = quay_cloud();
+  for (float y = -18.0F; y < -1.0F; y += 0.1F) {
+    for (float z = 1.0F; z < 9.0F; z += 0.1F) {
+      with_lorry.emplace_back(-8.0F, y, z);
+    }
+  }
+  Frames frames(std::make_shared<const QuayMap>(with_lorry));
+  for (int i = 0; i < 40; ++i) {
+    const MachineFinding finding = frames.run(1, {});
+    EXPECT_EQ(finding.faults, 0) << finding.reason;
+  }
+}
+
 TEST(MachineWitness, AChargeStandsUntilASightThatWouldHaveShownItDoesNot) {
   Frames frames;
   frames.run(20, {0.3, 0.0, 0.0});
