@@ -25,8 +25,9 @@ std::shared_ptr<const QuayMap> quay_map() {
 /// Frames at 10 Hz of a machine whose joints read something else than they should.
 class Frames {
  public:
-  explicit Frames(std::shared_ptr<const QuayMap> map = quay_map(), const QuayConfig& quay = {})
-      : witness_(quay, std::move(map), quay_machine(), kRegion) {}
+  explicit Frames(std::shared_ptr<const QuayMap> map = quay_map(), const QuayConfig& quay = {},
+                  int returns_of_each_surface = 400)
+      : witness_(quay, std::move(map), quay_machine(), kRegion), count_(returns_of_each_surface) {}
 
   MachineFinding run(int frames, const Joints& too_much, const std::vector<std::size_t>& surfaces = {0, 1, 2},
                      const Joints& rate = {}) {
@@ -34,8 +35,8 @@ class Frames {
     for (int i = 0; i < frames; ++i) {
       const Joints reported{kWorking.d_x + too_much.d_x, kWorking.theta_r + too_much.theta_r,
                             kWorking.theta_p + too_much.theta_p};
-      QuayFrame frame =
-          quay_frame(reported, misplaced(reported, kWorking), static_cast<unsigned>(frame_), 400, surfaces);
+      QuayFrame frame = quay_frame(reported, misplaced(reported, kWorking), static_cast<unsigned>(frame_),
+                                   count_, surfaces);
       frame.stand.rate = rate;
       finding =
           witness_.look(MeasurementTime{milliseconds(100) * frame_++}, frame.scan, frame.views, frame.stand);
@@ -46,6 +47,7 @@ class Frames {
 
  private:
   MachineWitness witness_;
+  int count_;
   int frame_ = 0;
 };
 
@@ -89,7 +91,7 @@ TEST(MachineWitness, ALorryThatHasLeftTheQuayIsNoFaultOfTheMachine) {
       with_lorry.emplace_back(-8.0F, y, z);
     }
   }
-  Frames frames(std::make_shared<const QuayMap>(with_lorry));
+  Frames frames(std::make_shared<const QuayMap>(with_lorry), {}, 5000);
   for (int i = 0; i < 40; ++i) {
     const MachineFinding finding = frames.run(1, {});
     EXPECT_EQ(finding.faults, 0) << finding.reason;
