@@ -31,11 +31,27 @@ constexpr double kSureShare = 0.8;
 // hundred is seen through, at an edge: of 12 a half are not.
 constexpr double kMostSeenThrough = 0.5;
 constexpr double kFewestReached = 12.0;
+// What leaves the quay in one piece is a lorry or a row of containers, 20 m long at most; a machine that is
+// elsewhere sees through what stands farther apart as well.
+constexpr float kLongestThing = 25.0F;  // m
+constexpr std::size_t kRemembered = 100;
 // Twenty frames, two seconds, are remembered.
 constexpr double kFading = 0.95;
 
 std::optional<QuayPlane> known_top(const QuayConfig& quay) {
   return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
+}
+
+float extent(const std::deque<Point>& points) {
+  if (points.empty()) {
+    return 0.0F;
+  }
+  Box box{points.front(), points.front()};
+  for (const Point& p : points) {
+    box.min = box.min.cwiseMin(p);
+    box.max = box.max.cwiseMax(p);
+  }
+  return (box.max - box.min).norm();
 }
 
 }  // namespace
@@ -146,7 +162,12 @@ bool MachineWitness::acquits(const Verdict& verdict) const {
 void MachineWitness::remember(const QuaySighting& sighting) {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     planes_[i].reached = kFading * planes_[i].reached + sighting.planes[i].reached;
-    planes_[i].seen_through = kFading * planes_[i].seen_through + sighting.planes[i].seen_through;
+    const Cloud& through_W = sighting.planes[i].seen_through_W;
+    planes_[i].seen_through = kFading * planes_[i].seen_through + double(through_W.size());
+    std::deque<Point>& where_W = planes_[i].where_W;
+    where_W.insert(where_W.end(), through_W.begin(), through_W.end());
+    where_W.erase(where_W.begin(),
+                  where_W.end() - static_cast<std::ptrdiff_t>(std::min(where_W.size(), kRemembered)));
   }
 }
 
@@ -154,7 +175,8 @@ void MachineWitness::remember(const QuaySighting& sighting) {
 std::string MachineWitness::seen_through() const {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const Memory& of_class = planes_[i];
-    if (of_class.reached >= kFewestReached && of_class.seen_through > kMostSeenThrough * of_class.reached) {
+    if (of_class.reached >= kFewestReached && of_class.seen_through > kMostSeenThrough * of_class.reached &&
+        extent(of_class.where_W) > kLongestThing) {
       return format_text(
           "the scan sees through %.0f %% of the quay's %s surfaces where joints and mount put them",
           100.0 * of_class.seen_through / of_class.reached, surface_class_name(static_cast<SurfaceClass>(i)));

@@ -6,6 +6,7 @@
 // ms a frame, whatever the map's size.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -72,6 +73,7 @@ class MachineWitness {
   struct Memory {  // of the last frames, fading
     double reached = 0.0;
     double seen_through = 0.0;
+    std::deque<Point> where_W;  // of the last ones that were seen through
   };
   std::array<Memory, QuayMap::kClasses> planes_;
   /// The quay as it was seen when the machine stood last.

@@ -84,7 +84,10 @@ const QuaySighting& QuaySight::gather() {
 
 /// Begins a frame: takes returns that may be the quay's evenly out of the scan.
 void QuaySight::choose_returns(const FilteredScan& scan) {
-  seen_.planes = {};
+  for (QuayCount& count : seen_.planes) {
+    count.reached = 0;
+    count.seen_through_W.clear();
+  }
   returns_W_.clear();
   ++turn_;
   const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;
@@ -129,7 +132,9 @@ void QuaySight::look_through(const QuayMap& map, std::size_t surface, const Scan
       if (const RayEnd* nearest = nearest_ray(rays_)) {
         const bool through = std::abs(nearest->offset) > kOnPlane && nearest->depth > surface_rays::kBehind;
         seen_.planes[surface].reached += 1;
-        seen_.planes[surface].seen_through += through ? 1 : 0;
+        if (through) {
+          seen_.planes[surface].seen_through_W.push_back(plane.centre_W);
+        }
       }
     }
     next -= tile.count;

@@ -42,7 +42,7 @@ struct QuayObservation {
 /// Planes of the map of one class that rays reached.
 struct QuayCount {
   std::uint32_t reached = 0;
-  std::uint32_t seen_through = 0;
+  Cloud seen_through_W;  // middles of those that rays went through
 };
 
 struct QuaySighting {

@@ -40,7 +40,8 @@ inline const std::vector<QuaySurface>& quay_surfaces() {
   static const std::vector<QuaySurface> all = {
       {{-20.0F, -19.0F, 0.0F}, {33.0F, 0.0F, 0.0F}, {0.0F, 19.0F, 0.0F}},  // top
       {{14.0F, -19.0F, 1.0F}, {0.0F, 15.0F, 0.0F}, {0.0F, 0.0F, 5.0F}},    // across the rails
-      {{-20.0F, -20.0F, 1.0F}, {33.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 5.0F}}};  // along them
+      {{-20.0F, -20.0F, 1.0F}, {33.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 5.0F}},   // along them
+      {{40.0F, -19.0F, 1.0F}, {0.0F, 15.0F, 0.0F}, {0.0F, 0.0F, 5.0F}}};   // across them
   return all;
 }
 

@@ -77,8 +77,9 @@ TEST(MachineWitness, AJointBeyondItsClassTakesHealthWithinHalfASecond) {
 }
 
 TEST(MachineWitness, AMachineThatIsMetresOffSeesThroughTheQuaysWalls) {
-  Frames frames;
-  const MachineFinding finding = frames.run(20, {4.0, 0.0, 0.0});
+  const std::vector<std::size_t> all = {0, 1, 2, 3};  // more than one thing that could have left
+  Frames frames(std::make_shared<const QuayMap>(quay_cloud(all)));
+  const MachineFinding finding = frames.run(20, {4.0, 0.0, 0.0}, all);
   EXPECT_EQ(finding.faults, fault::plc_value);
   EXPECT_NE(finding.reason.find("transverse"), std::string::npos) << finding.reason;
 }
