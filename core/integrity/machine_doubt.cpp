@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/text.hpp"
 
@@ -26,20 +27,32 @@ Eigen::MatrixXd along(const Misplacement& seen, const std::vector<Twist>& twists
   return columns;
 }
 
-/// How much of `h` there is in `y`, and how much of that wear can be.
-JointDoubt doubt_along(const Eigen::VectorXd& h, const Eigen::VectorXd& y, const Eigen::MatrixXd& S_inverse,
-                       const Eigen::MatrixXd& G, const Eigen::VectorXd& noise) {
-  const Eigen::VectorXd weights = S_inverse * h;
-  const double worth = h.dot(weights);
-  if (!(worth > 0.0)) {
-    return {0.0, std::numeric_limits<double>::infinity(), 0.0};
+/// What was seen, and how it is held against wear: y = G w + noise, along the measured directions.
+struct Weighing {
+  Eigen::VectorXd y, noise;
+  Eigen::MatrixXd G, S_inverse;
+
+  Weighing(Eigen::VectorXd seen, Eigen::VectorXd sigmas, Eigen::MatrixXd wear)
+      : y(std::move(seen)), noise(std::move(sigmas)), G(std::move(wear)) {
+    Eigen::MatrixXd S = G * G.transpose();
+    S.diagonal() += noise.cwiseAbs2();
+    S_inverse = S.ldlt().solve(Eigen::MatrixXd::Identity(y.size(), y.size()));
   }
-  const Eigen::VectorXd wear = (G.transpose() * weights).cwiseAbs();
-  const double most_of_wear = std::min(wear.sum(), kSpread * wear.norm());
-  const double most_of_noise = kNoiseSigmas * weights.cwiseProduct(noise).norm();
-  const double z = weights.dot(y);
-  return {z / worth, (most_of_wear + most_of_noise) / worth, z * z / worth};
-}
+
+  /// How much of `h` there is in y, and how much of that wear can be.
+  [[nodiscard]] JointDoubt doubt_along(const Eigen::VectorXd& h) const {
+    const Eigen::VectorXd weights = S_inverse * h;
+    const double worth = h.dot(weights);
+    if (!(worth > 0.0)) {
+      return {0.0, std::numeric_limits<double>::infinity(), 0.0};
+    }
+    const Eigen::VectorXd wear = (G.transpose() * weights).cwiseAbs();
+    const double most_of_wear = std::min(wear.sum(), kSpread * wear.norm());
+    const double most_of_noise = kNoiseSigmas * weights.cwiseProduct(noise).norm();
+    const double z = weights.dot(y);
+    return {z / worth, (most_of_wear + most_of_noise) / worth, z * z / worth};
+  }
+};
 
 }  // namespace
 
@@ -59,25 +72,22 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
     y[i] = seen.measured[static_cast<std::size_t>(i)].offset;
     noise[i] = seen.measured[static_cast<std::size_t>(i)].sigma;
   }
-  const Eigen::MatrixXd G = along(seen, wear_twists(machine, stand, seen.centre_W));
-  Eigen::MatrixXd S = G * G.transpose();
-  S.diagonal() += noise.cwiseAbs2();
-  const Eigen::MatrixXd S_inverse = S.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-
+  const Weighing weighing(std::move(y), std::move(noise),
+                          along(seen, wear_twists(machine, stand, seen.centre_W)));
   double best = 0.0;
   for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
     const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
     JointDoubt& here = doubt.joints.at(static_cast<std::size_t>(joint));
-    here = doubt_along(h, y, S_inverse, G, noise);
+    here = weighing.doubt_along(h);
     if (std::abs(here.reads_too_much) > here.hidden && here.gain > best) {
       best = here.gain;
       doubt.accused = joint;
     }
   }
-  doubt.strain = y.dot(S_inverse * y);
+  doubt.strain = weighing.y.dot(weighing.S_inverse * weighing.y);
   // Wear that is spread evenly between its limits has a mean square of a third, along every direction that S
   // whitens; nine times that is three sigma.
-  doubt.most_strain = std::min(static_cast<double>(G.cols()), 3.0 * static_cast<double>(n));
+  doubt.most_strain = std::min(static_cast<double>(weighing.G.cols()), 3.0 * static_cast<double>(n));
   doubt.beyond_class = doubt.accused || doubt.strain > doubt.most_strain;
   return doubt;
 }
@@ -97,11 +107,9 @@ JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand
     y[i] = measured.direction.dot(since);
     noise[i] = std::hypot(measured.sigma, rest_sigma);
   }
-  const Eigen::MatrixXd G = along(seen, fast_wear_twists(machine, stand, seen.centre_W));
-  Eigen::MatrixXd S = G * G.transpose();
-  S.diagonal() += noise.cwiseAbs2();
-  return doubt_along(along(seen, {lateness_twist(machine, stand, seen.centre_W)}), y,
-                     S.ldlt().solve(Eigen::MatrixXd::Identity(n, n)), G, noise);
+  return Weighing(std::move(y), std::move(noise),
+                  along(seen, fast_wear_twists(machine, stand, seen.centre_W)))
+      .doubt_along(along(seen, {lateness_twist(machine, stand, seen.centre_W)}));
 }
 
 std::string accusation(JointName joint, double amount) {
