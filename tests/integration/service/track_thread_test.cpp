@@ -31,11 +31,14 @@ class TrackThreadTest : public testing::Test {
     scan.end = scan.last_firing = start + last;
     exchange.scans.publish();
   }
-  /// Rings, and returns when the thread has woken and looked around.
+  /// Rings, and returns when the thread has seen all that was there before. It beats before it looks, so only
+  /// the second beat says that a look begun after the ring has ended.
   void ring() {
-    const SteadyTime rung = steady_now();
-    exchange.track_bell.ring();
-    while (pulse.silence(rung) >= Nanoseconds::zero()) std::this_thread::yield();
+    for (int turn = 0; turn < 2; ++turn) {
+      const SteadyTime rung = steady_now();
+      exchange.track_bell.ring();
+      while (pulse.silence(rung) >= Nanoseconds::zero()) std::this_thread::yield();
+    }
   }
   FrameDone next_frame() {
     FrameDone frame = exchange.frame.get();
