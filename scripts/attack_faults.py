@@ -43,6 +43,7 @@ class Attack:
     without: str       # without a map of the quay: "shown" as with one; "speed": when the hull then seems faster than
                        # max_speed; "never": nothing need tell
     quay_map_only: bool = False
+    within_class: bool = False  # a machine that is worn as far as it may be: must not be accused
 
 
 def start_of_motion(site, joint):
@@ -160,6 +161,50 @@ def mount(change):
     return falsify
 
 
+def rotation(rpy):
+    (cr, cp, cy), (sr, sp, sy) = np.cos(np.radians(rpy)), np.sin(np.radians(rpy))
+    return (np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]]) @ np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+            @ np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]]))
+
+
+def rpy_of(R):
+    return np.degrees([np.arctan2(R[2, 1], R[2, 2]), -np.arcsin(R[2, 0]), np.arctan2(R[1, 0], R[0, 0])])
+
+
+def backlash(values, width):
+    """Which side of its play the joint leans to: +1 or -1 by where it went last, between where it turns round."""
+    leaning, centre = np.zeros(len(values)), values[0]
+    for i, v in enumerate(values):
+        centre = min(max(centre, v - width), v + width)
+        leaning[i] = (v - centre) / width
+    return leaning
+
+
+def worn(number):
+    """A machine drawn from the worn class of ICD 3.1, each term evenly between its limits; the first two have every
+    term at one."""
+    def falsify(site):
+        draw = np.random.default_rng(number)
+
+        def term(limit, size=None):
+            return limit * (draw.choice([-1.0, 1.0], size) if number <= 2 else draw.uniform(-1.0, 1.0, size))
+
+        late(tuple(JOINTS), term(0.010))(site)
+        site.plc["d_x"] = site.plc["d_x"] * (1 + term(0.001)) + term(0.03)
+        for column in ("theta_r", "theta_p"):
+            play = abs(term(0.10))
+            site.plc[column] = site.plc[column] + play * backlash(site.plc[column], 0.2) + term(0.05)
+        sag = abs(term(0.10))
+
+        def change(xyz, rpy):
+            turn = np.degrees(1.5 * sag / max(1.0, np.hypot(*xyz[:2])))  # of the end of a beam held at one end
+            R = rotation(np.array([0, -turn, 0])) @ rotation(term(0.10, 3)) @ rotation(rpy)  # the true mount has sagged
+            return xyz + [0, 0, sag] + term(0.02, 3), rpy_of(R)
+
+        return mount(change)(site)
+    return falsify
+
+
 def header_and_points(pcd):
     end = pcd.index(b"DATA binary\n") + len(b"DATA binary\n")
     return pcd[:end], np.frombuffer(pcd[end:], dtype="<f4").reshape(-1, 3)
@@ -205,7 +250,7 @@ def attacks_on(joint):
     yield Attack(f"{joint}-sign", "counts the other way", own, value(joint, lambda v, t: -v), "shown")
     yield Attack(f"{joint}-mirrored", "counts the other way from where it stood at first", own,
                  value(joint, lambda v, t: 2 * v[0] - v), "shown")
-    for bias in (0.1, 0.3, 1.0, 3.0) if joint == "travel" else (1.0, 2.0, 5.0, 10.0):
+    for bias in (0.2, 0.5, 1.0, 3.0) if joint == "travel" else (1.0, 2.0, 5.0, 10.0):
         yield Attack(f"{joint}-bias{bias:+g}", f"{bias:g} {unit} too much", own,
                      value(joint, lambda v, t, bias=bias: v + bias),
                      "shown" if bias > LARGEST_HONEST[joint] else "never")
@@ -235,22 +280,20 @@ def attacks_on_all_joints():
         yield Attack(f"all-late-{ms}", f"all joints {ms} ms later than plc.latency_ms says", every,
                      late(every, ms / 1e3), "never")
     yield Attack("words-swapped", "the wrong plc.read.word_order", (), swapped_words, "shown")
-    yield Attack("words-torn", "one read in twenty has the low words of the one before", every, torn_reads, "never")
+    yield Attack("words-torn", "one read in twenty has the low words of the one before", (), torn_reads, "shown")
 
 
 def attacks_on_mounts():
-    shown_by = ("slew",)
-
     def turn(axis, deg):
         return mount(lambda xyz, rpy: (xyz, rpy + deg * np.eye(3)[axis]))
 
-    yield Attack("mount-mirrored", "the LiDAR hangs on the boom's other side", shown_by,
+    yield Attack("mount-mirrored", "the LiDAR hangs on the boom's other side", (),
                  mount(lambda xyz, rpy: (xyz * [1, -1, 1], rpy * [-1, 1, -1])), "shown")
-    yield Attack("mount-yaw90", "turned by 90 deg", shown_by, turn(2, 90.0), "shown")
+    yield Attack("mount-yaw90", "turned by 90 deg", (), turn(2, 90.0), "shown")
     for axis, name in enumerate(("roll", "pitch", "yaw")):
-        yield Attack(f"mount-{name}2", f"{name} 2 deg off", shown_by, turn(axis, 2.0), "never")
+        yield Attack(f"mount-{name}2", f"{name} 2 deg off", (), turn(axis, 2.0), "never")
     for axis, name in enumerate("xyz"):
-        yield Attack(f"mount-{name}0.3", f"{name} 0.3 m off", shown_by,
+        yield Attack(f"mount-{name}0.3", f"{name} 0.3 m off", (),
                      mount(lambda xyz, rpy, axis=axis: (xyz + 0.3 * np.eye(3)[axis], rpy)), "never")
 
 
@@ -270,7 +313,10 @@ def attacks_on_maps():
 
 def all_attacks():
     """Nothing falsified first."""
-    yield Attack("honest", "nothing is falsified", (), lambda site: site.plc["t_ns"][0], "shown")
+    yield Attack("honest", "nothing is falsified", (), lambda site: site.plc["t_ns"][0], "shown",
+                 within_class=True)
+    for number in range(1, 7):
+        yield Attack(f"worn-{number}", "worn as far as its class allows", (), worn(number), "never", within_class=True)
     for joint in JOINTS:
         yield from attacks_on(joint)
     yield from attacks_on_all_joints()

@@ -15,12 +15,33 @@ UNSEEN = (0.05, 0.15)      # m, deg: a pose that is off by less may stay unseen 
 NOTICE_S = 3.0             # from the motion that shows a fault to health 0
 MAX_SPEED = 0.3            # m/s, hull.max_speed
 SPEEDING_S = 0.5           # that long has the hull to seem faster than that
-CONTRADICTED = (2, 10)     # fault bits: PLC value contradicted, pose implausible
+ACCUSED, IMPLAUSIBLE = 4, 1024  # fault bits 2 and 10
 WORDS = {"travel": ("travel", "gantry"), "slew": ("slew",), "luff": ("luff",)}
 
 
-def at_frames(values, t_ns, frames_t_ns):
-    return np.interp(frames_t_ns - t_ns[0], t_ns - t_ns[0], values)
+# What wear within its class hides of a joint where a map of the quay is in view (table of ICD 3.1): at d_x = 0, and
+# for each metre of travel.
+HIDDEN = {"travel": (0.13, 0.05 / 30), "slew": (0.4, 0.0), "luff": (0.8, 0.0)}  # m, deg
+
+
+def at_times(plc, column, t_ns):
+    return np.interp(t_ns - plc["t_ns"][0], plc["t_ns"] - plc["t_ns"][0], plc[column])
+
+
+def lasting(condition, t_ns, seconds):
+    """Where `condition` has been true for that long without a break."""
+    last_false = np.maximum.accumulate(np.where(condition, -1, np.arange(len(condition))))
+    return condition & (t_ns - t_ns[np.maximum(last_false, 0)] >= seconds * faults.SECOND)
+
+
+def shown_by_amount(plc, falsified, t_ns):
+    """At which of the times t_ns one of the joints is off by more than wear hides."""
+    shown_ = np.zeros(len(t_ns), dtype=bool)
+    for joint, (amount, for_each_metre) in HIDDEN.items():
+        column = faults.JOINTS[joint]
+        off = np.abs(at_times(falsified, column, t_ns) - at_times(plc, column, t_ns))
+        shown_ |= off > amount + for_each_metre * np.abs(at_times(plc, "d_x", t_ns))
+    return shown_
 
 
 def shown_by_motion(plc, joints, begin):
@@ -61,24 +82,27 @@ def shown_by_speed(plc, joints, begin, machine, point):
     moments = []
     for joint in joints:
         too_fast = (apparent_speed(plc, joint, machine, point) > MAX_SPEED) & (plc["t_ns"] >= begin)
-        since = np.where(too_fast, -1, np.arange(len(too_fast)))
-        last_slow = np.maximum.accumulate(since)
-        lasted = plc["t_ns"] - plc["t_ns"][np.maximum(last_slow, 0)] >= SPEEDING_S * faults.SECOND
-        far = np.flatnonzero(too_fast & lasted)
+        far = np.flatnonzero(lasting(too_fast, plc["t_ns"], SPEEDING_S))
         if len(far):
             moments.append(plc["t_ns"][far[0]])
     return min(moments, default=None)
 
 
-def shown(attack, plc, begin, with_map, machine, point):
-    """ns at which it shows; None = nothing need ever tell in this run."""
+def owed(attack, plc, falsified, begin, with_map, machine, point, t_ns):
+    """At which of the times t_ns the fault has shown for long enough: health 0, or the pose right. `plc` is the true
+    one."""
+    def since(moment):
+        return np.zeros(len(t_ns), dtype=bool) if moment is None else t_ns > moment + NOTICE_S * faults.SECOND
+
     way = "shown" if with_map else attack.without
-    if way == "never":
-        return None
+    if way == "never" or (attack.within_class and attack.name != "honest"):
+        return since(None)
     if not attack.joints:
-        return begin
-    return shown_by_motion(plc, attack.joints, begin) if way == "shown" else \
-        shown_by_speed(plc, attack.joints, begin, machine, point)
+        return since(begin)
+    if with_map:
+        return lasting(shown_by_amount(plc, falsified, t_ns) & (t_ns >= begin), t_ns, NOTICE_S)
+    return since(shown_by_motion(plc, attack.joints, begin) if way == "shown" else
+                 shown_by_speed(plc, attack.joints, begin, machine, point))
 
 
 @dataclasses.dataclass
@@ -88,19 +112,20 @@ class Verdict:
     healthy: int
     wrong: int           # healthy, and off by more than 5 cm or 0.1 deg
     grave: int           # healthy, and off by more than may stay unseen
-    late: int            # of these later than 3 s after the fault shows
+    late: int            # of these when the fault has shown for 3 s
     worst_m: float       # of healthy frames
     worst_deg: float
-    shows_s: float       # from the beginning to when it shows; inf = nothing need ever tell
+    shows_s: float       # from the beginning to when it first shows for 3 s; inf = nothing need ever tell
     fell_s: float        # from the beginning to health 0 after a 1; 0 = it was never 1; inf = it stayed 1
     until_s: float       # from the beginning to the last grave frame; None = there is none
+    charged: int         # frames in which the machine was accused
     bit: bool            # was bit 2 or 10 set while health was 0?
     named: bool          # was the joint named then? None without a joint, or without reasons in the table
     refused: bool = False
 
 
 REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, worst_m=0.0, worst_deg=0.0, shows_s=math.inf,
-                  fell_s=0.0, until_s=None, bit=False, named=None, refused=True)
+                  fell_s=0.0, until_s=None, charged=0, bit=False, named=None, refused=True)
 
 
 def names_joint(frames, down, joints):
@@ -123,8 +148,8 @@ def fall(frames, after, seconds):
     return seconds(frames["t_ns"][zeros[0]]) if len(zeros) else math.inf
 
 
-def judge_attack(frames, truth, begin, shows, joints=(), unseen=UNSEEN):
-    """`begin`, `shows`: ns. Tables of judge.read_table()."""
+def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN):
+    """`begin`: ns; `owed_`: of each frame, as owed() says. Tables of judge.read_table()."""
     twists = judge.error_twists(frames, truth)
     error = np.linalg.norm(twists[:, 3:], axis=1)
     turn = np.degrees(np.linalg.norm(twists[:, :3], axis=1))
@@ -132,9 +157,9 @@ def judge_attack(frames, truth, begin, shows, joints=(), unseen=UNSEEN):
     healthy = after & (frames["health"] == 1)
     wrong = healthy & ~judge.within(error, turn)
     grave = healthy & ~((error <= unseen[0]) & (turn <= unseen[1]))
-    late = grave & (frames["t_ns"] > (shows + NOTICE_S * faults.SECOND if shows is not None else math.inf))
+    late = grave & owed_
     down = after & (frames["health"] != 1)
-    bits = frames["faults"][down].astype(int) if "faults" in frames else np.zeros(np.count_nonzero(down), dtype=int)
+    bits = frames["faults"].astype(int)
 
     def largest(values):
         return float(np.max(np.nan_to_num(values[healthy], nan=math.inf))) if healthy.any() else 0.0
@@ -144,10 +169,11 @@ def judge_attack(frames, truth, begin, shows, joints=(), unseen=UNSEEN):
 
     return Verdict(frames=int(after.sum()), healthy=int(healthy.sum()), wrong=int(wrong.sum()), grave=int(grave.sum()),
                    late=int(late.sum()), worst_m=largest(error), worst_deg=largest(turn),
-                   shows_s=math.inf if shows is None else (shows - begin) * 1e-9,
+                   shows_s=since_begin(frames["t_ns"][owed_][0]) - NOTICE_S if owed_.any() else math.inf,
                    fell_s=fall(frames, after, since_begin),
                    until_s=since_begin(frames["t_ns"][grave][-1]) if grave.any() else None,
-                   bit=bool(np.any(bits & sum(1 << b for b in CONTRADICTED))), named=names_joint(frames, down, joints))
+                   charged=int(np.count_nonzero(bits[after] & ACCUSED)),
+                   bit=bool(np.any(bits[down] & (ACCUSED | IMPLAUSIBLE))), named=names_joint(frames, down, joints))
 
 
 def told(verdicts, what):
@@ -167,5 +193,4 @@ def summary(verdicts):
     return {"runs": len(verdicts), "refused": total("refused"), "frames": total("frames"), "healthy": total("healthy"),
             "wrong": total("wrong"), "grave": total("grave"), "late": total("late"), "worst_m": most("worst_m"),
             "worst_deg": most("worst_deg"), "fell_s": most("fell_s"), "until_s": most("until_s"),
-            "bit": told(verdicts, "bit"),
-            "named": told(verdicts, "named")}
+            "charged": total("charged"), "bit": told(verdicts, "bit"), "named": told(verdicts, "named")}

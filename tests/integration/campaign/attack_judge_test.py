@@ -43,33 +43,47 @@ def attack(joints, without="shown"):
     return faults.Attack("made-up", "by hand", joints, None, without)
 
 
-def seconds(shown):
-    return None if shown is None else (shown - BEGAN) * 1e-9
+OWED = np.ones(100, dtype=bool)
+
+
+def owed_from(seconds, count=100):
+    return 0.05 + 0.1 * np.arange(count) > seconds
 
 
 class WhenItShows(unittest.TestCase):
-    def shown(self, an_attack, table, begin=0.0, with_map=True, point=(0, 4, 3)):
-        return seconds(attack_judge.shown(an_attack, table, at(begin), with_map, MACHINE, point))
+    def shown(self, an_attack, table, begin=0.0, with_map=True, point=(0, 4, 3), falsified=None):
+        """s, from when on it has shown; None = never."""
+        t_ns = at(np.arange(0.05, (table["t_ns"][-1] - BEGAN) * 1e-9, 0.1))
+        owed = attack_judge.owed(an_attack, table, falsified or table, at(begin), with_map, MACHINE, point, t_ns)
+        return (t_ns[owed][0] - BEGAN) * 1e-9 - attack_judge.NOTICE_S if owed.any() else None
 
-    def test_a_joint_has_to_move_two_metres_or_ten_degrees_after_the_beginning(self):
+    def test_without_a_map_a_joint_has_to_move_two_metres_or_ten_degrees_after_the_beginning(self):
         table = plc(60, d_x=lambda s: 0.1 * s, theta_r=lambda s: 90 + s)
-        self.assertAlmostEqual(self.shown(attack(("travel",)), table), 20.0, delta=0.03)
-        self.assertAlmostEqual(self.shown(attack(("travel",)), table, begin=15.0), 35.0, delta=0.03)
-        self.assertAlmostEqual(self.shown(attack(("slew",)), table), 10.0, delta=0.03)
-        self.assertIsNone(self.shown(attack(("luff",)), table))
-        self.assertAlmostEqual(self.shown(attack(("travel", "slew", "luff")), table), 10.0, delta=0.03)
+        self.assertAlmostEqual(self.shown(attack(("travel",)), table, with_map=False), 20.0, delta=0.11)
+        self.assertAlmostEqual(self.shown(attack(("travel",)), table, begin=15.0, with_map=False), 35.0, delta=0.11)
+        self.assertAlmostEqual(self.shown(attack(("slew",)), table, with_map=False), 10.0, delta=0.11)
+        self.assertIsNone(self.shown(attack(("luff",)), table, with_map=False))
+        self.assertAlmostEqual(self.shown(attack(("travel", "slew", "luff")), table, with_map=False), 10.0, delta=0.11)
 
     def test_the_way_there_and_back_counts_as_one_motion(self):
         table = plc(30, d_x=lambda s: min(s, 10.0) * -0.11 + max(0.0, min(s - 10, 10.0)) * 0.21)
-        self.assertAlmostEqual(self.shown(attack(("travel",)), table), 19.52, delta=0.05)
+        self.assertAlmostEqual(self.shown(attack(("travel",)), table, with_map=False), 19.52, delta=0.11)
+
+    def test_with_a_map_it_shows_while_a_joint_is_off_by_more_than_wear_hides(self):
+        table, false = plc(30, d_x=lambda s: 30.0), plc(30, d_x=lambda s: 30.0 + 0.02 * s)
+        self.assertAlmostEqual(self.shown(attack(("travel",)), table, falsified=false), 9.0, delta=0.11)  # 0.18 m
+        self.assertIsNone(self.shown(attack(("travel",)), table))
+        waves = plc(30, theta_r=lambda s: 0.6 * math.sin(2 * math.pi * s / 8.0))
+        self.assertIsNone(self.shown(attack(("slew",)), plc(30), falsified=waves))  # never for three seconds
+        slow = plc(30, theta_r=lambda s: 0.6 * math.sin(2 * math.pi * s / 12.0))  # above 0.4 deg from 1.39 to 4.61 s
+        self.assertAlmostEqual(self.shown(attack(("slew",)), plc(30), falsified=slow), 1.4, delta=0.21)
 
     def test_what_no_motion_is_needed_for_shows_at_once(self):
-        self.assertEqual(self.shown(attack(()), plc(10), begin=4.0), 4.0)
+        self.assertAlmostEqual(self.shown(attack(()), plc(10), begin=4.0), 4.0, delta=0.11)
 
     def test_without_a_map_some_never_show_and_others_by_the_speed_that_the_hull_seems_to_have(self):
         table = plc(60, d_x=lambda s: 0.25 * min(s, 20.0) + 0.4 * max(0.0, s - 20.0))
         self.assertIsNone(self.shown(attack(("travel",), "never"), table, with_map=False))
-        self.assertAlmostEqual(self.shown(attack(("travel",), "never"), table), 8.0, delta=0.03)
         # 0.4 m/s from 20 s on, seen over half a second, for half a second.
         self.assertAlmostEqual(self.shown(attack(("travel",), "speed"), table, with_map=False), 20.5, delta=0.3)
         slow = plc(60, d_x=lambda s: 0.25 * s)
@@ -88,7 +102,7 @@ class WhenItShows(unittest.TestCase):
 class WhatIsWrong(unittest.TestCase):
     def test_healthy_frames_that_are_off_count_from_the_beginning_on_and_as_late_three_seconds_after_it_shows(self):
         x = np.full(100, 0.06)
-        verdict = attack_judge.judge_attack(frames(100, x=x), truth(10), at(2.0), at(4.0))
+        verdict = attack_judge.judge_attack(frames(100, x=x), truth(10), at(2.0), owed_from(7.0))
         self.assertEqual((verdict.frames, verdict.healthy, verdict.wrong, verdict.grave), (80, 80, 80, 80))
         self.assertEqual(verdict.late, 30)  # 7.05 s to 9.95 s
         self.assertAlmostEqual(verdict.worst_m, 0.06)
@@ -97,41 +111,41 @@ class WhatIsWrong(unittest.TestCase):
 
     def test_a_turn_of_a_tenth_of_a_degree_is_wrong_and_of_more_than_0_15_grave(self):
         yaw = np.where(np.arange(100) < 50, 0.12, 0.16)
-        verdict = attack_judge.judge_attack(frames(100, yaw=yaw), truth(10), at(0.0), at(0.0))
+        verdict = attack_judge.judge_attack(frames(100, yaw=yaw), truth(10), at(0.0), OWED)
         self.assertEqual((verdict.wrong, verdict.grave, verdict.late), (100, 50, 50))
         self.assertAlmostEqual(verdict.worst_deg, 0.16)
 
     def test_how_much_may_stay_unseen_can_be_told(self):
         yaw = np.where(np.arange(100) < 50, 0.3, 0.5)
-        verdict = attack_judge.judge_attack(frames(100, x=0.1, yaw=yaw), truth(10), at(0.0), at(0.0),
+        verdict = attack_judge.judge_attack(frames(100, x=0.1, yaw=yaw), truth(10), at(0.0), OWED,
                                             unseen=(0.15, 0.4))
         self.assertEqual((verdict.wrong, verdict.grave), (100, 50))
 
     def test_what_never_shows_is_never_late(self):
-        verdict = attack_judge.judge_attack(frames(100, x=1.0), truth(10), at(0.0), None)
+        verdict = attack_judge.judge_attack(frames(100, x=1.0), truth(10), at(0.0), ~OWED)
         self.assertEqual((verdict.grave, verdict.late, verdict.shows_s), (100, 0, math.inf))
 
     def test_frames_without_health_are_never_wrong(self):
         health = np.arange(100) < 30
-        verdict = attack_judge.judge_attack(frames(100, health=health, x=1.0), truth(10), at(2.0), at(2.0))
+        verdict = attack_judge.judge_attack(frames(100, health=health, x=1.0), truth(10), at(2.0), owed_from(5.0))
         self.assertEqual((verdict.wrong, verdict.late), (10, 0))
         self.assertAlmostEqual(verdict.fell_s, 1.05)
 
     def test_healthy_without_a_pose_is_infinitely_wrong(self):
-        verdict = attack_judge.judge_attack(frames(50, x=math.nan), truth(5), at(0.0), at(0.0))
+        verdict = attack_judge.judge_attack(frames(50, x=math.nan), truth(5), at(0.0), OWED[:50])
         self.assertEqual((verdict.wrong, verdict.grave, verdict.worst_m), (50, 50, math.inf))
 
     def test_health_that_came_and_went_fell_when_it_went_and_one_that_never_came_at_once(self):
         i = np.arange(100)
-        verdict = attack_judge.judge_attack(frames(100, health=(i >= 20) & (i < 60)), truth(10), at(0.0), None)
+        verdict = attack_judge.judge_attack(frames(100, health=(i >= 20) & (i < 60)), truth(10), at(0.0), ~OWED)
         self.assertAlmostEqual(verdict.fell_s, 6.05)
-        self.assertEqual(attack_judge.judge_attack(frames(100, health=0), truth(10), at(0.0), None).fell_s, 0.0)
+        self.assertEqual(attack_judge.judge_attack(frames(100, health=0), truth(10), at(0.0), ~OWED).fell_s, 0.0)
 
 
 class WhatWasSaid(unittest.TestCase):
     def judged(self, joints=("slew",), **columns):
         health = np.arange(100) < 50
-        return attack_judge.judge_attack(frames(100, health=health, **columns), truth(10), at(0.0), None, joints)
+        return attack_judge.judge_attack(frames(100, health=health, **columns), truth(10), at(0.0), ~OWED, joints)
 
     def test_bit_2_or_10_while_health_is_0(self):
         self.assertTrue(self.judged(faults=1 << 2).bit)
@@ -150,11 +164,11 @@ class WhatWasSaid(unittest.TestCase):
 
 class Sums(unittest.TestCase):
     def test_runs_add_up_and_refused_ones_are_counted(self):
-        one = attack_judge.judge_attack(frames(100, x=0.06), truth(10), at(0.0), at(0.0))
-        other = attack_judge.judge_attack(frames(50, health=0, faults=4), truth(5), at(0.0), at(0.0))
+        one = attack_judge.judge_attack(frames(100, x=0.06), truth(10), at(0.0), OWED)
+        other = attack_judge.judge_attack(frames(50, health=0, faults=4), truth(5), at(0.0), OWED[:50])
         row = attack_judge.summary([one, other, attack_judge.REFUSED])
-        self.assertEqual([row[name] for name in ("runs", "refused", "frames", "healthy", "wrong", "late")],
-                         [3, 1, 150, 100, 100, 70])
+        self.assertEqual([row[name] for name in ("runs", "refused", "frames", "healthy", "wrong", "late",
+                                                "charged")], [3, 1, 150, 100, 100, 100, 50])
         self.assertEqual((row["bit"], row["named"], row["fell_s"]), ("1/2", "-", math.inf))
         self.assertAlmostEqual(row["worst_m"], 0.06)
         self.assertIsNone(attack_judge.summary([other])["until_s"])
