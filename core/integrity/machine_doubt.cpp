@@ -57,7 +57,7 @@ struct Weighing {
 }  // namespace
 
 MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
-                           const Misplacement& seen) {
+                           const Misplacement& seen, const std::vector<Twist>& of_reference) {
   MachineDoubt doubt;
   const auto n = static_cast<Eigen::Index>(seen.measured.size());
   if (n == 0) {
@@ -72,8 +72,9 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
     y[i] = seen.measured[static_cast<std::size_t>(i)].offset;
     noise[i] = seen.measured[static_cast<std::size_t>(i)].sigma;
   }
-  const Weighing weighing(std::move(y), std::move(noise),
-                          along(seen, wear_twists(machine, stand, seen.centre_W)));
+  std::vector<Twist> twists = wear_twists(machine, stand, seen.centre_W);
+  twists.insert(twists.end(), of_reference.begin(), of_reference.end());
+  const Weighing weighing(std::move(y), std::move(noise), along(seen, twists));
   double best = 0.0;
   for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
     const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});

@@ -35,8 +35,10 @@ struct MachineDoubt {
   bool beyond_class = false;  // a joint is accused, or the strain is too large
 };
 
+/// `of_reference`: twists about seen.centre_W, as wear's, by which what the quay is held against may be wrong.
 [[nodiscard]] MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
-                                         const Misplacement& seen);
+                                         const Misplacement& seen,
+                                         const std::vector<Twist>& of_reference = {});
 
 /// The same of joint values that are older than they are taken to be: what of the misplacement has come since
 /// the machine stood (`at_rest`), held against what wear can change meanwhile. Both hold all six directions.

@@ -35,6 +35,9 @@ constexpr double kFewestReached = 12.0;
 // elsewhere sees through what stands farther apart as well.
 constexpr float kLongestThing = 25.0F;  // m
 constexpr std::size_t kRemembered = 100;
+// A top that the session has found may be turned by so many of its sigmas.
+constexpr double kSigmasOfTop = 3.0;
+constexpr const char* kSinceFound = "against where this session found the quay's top, ";
 // Twenty frames, two seconds, are remembered.
 constexpr double kFading = 0.95;
 
@@ -57,12 +60,16 @@ float extent(const std::deque<Point>& points) {
 }  // namespace
 
 MachineWitness::MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map,
-                               const MachineConfig& machine, const std::optional<Box>& region_W)
-    : map_(std::move(map)),
-      top_(known_top(quay)),
-      machine_(machine),
-      region_W_(region_W),
-      sight_(region_W.has_value()) {}
+                               const MachineConfig& machine, const std::optional<Box>& region_W,
+                               const Box& hull_W)
+    : map_(std::move(map)), machine_(machine), sight_(region_W.has_value()) {
+  if (map_ == nullptr && region_W && quay.top_is_witness) {
+    top_ = known_top(quay);
+    if (!top_) {
+      learner_.emplace(hull_W, machine.slew.translation().y());
+    }
+  }
+}
 
 MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& scan,
                                     std::span<const ScanView> views, const MachineStand& stand) {
@@ -73,10 +80,12 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     forget_sight();  // the joints may be others by now
   }
   last_look_ = time;
-  const QuaySighting& sighting =
-      map_ != nullptr ? sight_.look_for(*map_, scan, views) : sight_.look_for(*top_, scan);
-  remember(sighting);
-  seen_ = find_misplacement(sighting.observations);
+  const QuaySighting* sighting = sighting_of(scan, views, stand);
+  if (sighting == nullptr) {
+    return {};
+  }
+  remember(*sighting);
+  seen_ = find_misplacement(sighting->observations);
   Verdict verdict = judge(stand);
   note_rest(time, stand, verdict);
   const bool acquitted = !standing_ || acquits(verdict);
@@ -91,13 +100,49 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
           in_place && map_ != nullptr && seen_.holds_all()};
 }
 
+/// Null while there is no top to look for yet.
+const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
+                                                const MachineStand& stand) {
+  if (map_ != nullptr) {
+    return &sight_.look_for(*map_, scan, views);
+  }
+  if (top_) {
+    return &sight_.look_for(*top_, scan);
+  }
+  if (const auto& top = learner_->top()) {
+    const QuaySighting& sighting = sight_.look_for(top->seen.plane, scan, &top->seen.area_W);
+    // What it is charged with was seen against this top: it is kept until it is acquitted.
+    learner_->seen(standing_ || sighting.observations.size() >= kFewestObservations);
+    return &sighting;
+  }
+  learner_->add(sight_.returns_of(scan), stand);
+  return nullptr;
+}
+
+/// A top that a worn machine has found is off by as much as that machine was.
+std::vector<Twist> MachineWitness::doubt_of_reference() const {
+  if (!learner_ || !learner_->top()) {
+    return {};
+  }
+  const TopLearner::Top& top = *learner_->top();
+  std::vector<Twist> twists = wear_twists(machine_, top.stand, seen_.centre_W);
+  for (int i = 0; i < 2; ++i) {
+    Twist tilt = Twist::Zero();
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
+    const Eigen::Vector3d middle = 0.5 * (top.seen.area_W.min + top.seen.area_W.max).cast<double>();
+    tilt << axis, axis.cross(seen_.centre_W - middle);
+    twists.push_back(kSigmasOfTop * top.seen.sigma_slope * tilt);
+  }
+  return twists;
+}
+
 MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   Verdict verdict;
   const bool few = seen_.observations < kFewestObservations || seen_.measured.empty();
   const double agreeing = double(seen_.agreeing) / std::max(1.0, double(seen_.observations));
   const bool found = !few && agreeing >= kLeastShare;
   if (found) {
-    verdict.doubt = doubt_machine(machine_, stand, seen_);
+    verdict.doubt = doubt_machine(machine_, stand, seen_, doubt_of_reference());
   }
   // A quay that is found in its place on all axes is in its place: what is seen through has left.
   const bool surely_in_place =
@@ -109,7 +154,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   } else if (found && verdict.doubt.beyond_class) {
     const auto& joint = verdict.doubt.accused;
     verdict.charge =
-        Charge{describe(verdict.doubt, seen_), joint,
+        Charge{(learner_ ? kSinceFound : "") + describe(verdict.doubt, seen_), joint,
                joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0};
   } else if (found) {
     verdict.charge = charge_of_lateness(stand);
@@ -189,6 +234,9 @@ void MachineWitness::forget_sight() {
   standing_since_.reset();
   at_rest_.reset();
   sight_.forget();
+  if (learner_) {
+    learner_->drop_gathered();
+  }
   planes_ = {};
   charges_in_a_row_ = 0;
 }
@@ -196,6 +244,9 @@ void MachineWitness::forget_sight() {
 void MachineWitness::forget() {
   forget_sight();
   standing_.reset();
+  if (learner_) {
+    learner_->forget();
+  }
 }
 
 }  // namespace hulltrack

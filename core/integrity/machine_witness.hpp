@@ -17,19 +17,20 @@
 #include "core/integrity/machine_doubt.hpp"
 #include "core/integrity/machine_finding.hpp"
 #include "core/integrity/quay_sight.hpp"
+#include "core/integrity/top_learner.hpp"
 #include "core/tracking/tracker_config.hpp"
 
 namespace hulltrack {
 
 class MachineWitness {
  public:
-  /// `map` may be null: then the quay's top is the witness, if `quay` knows it and there is a region to tell
-  /// quay from hull.
+  /// `map` may be null: then the quay's top is the witness, if there is a region to tell quay from hull: as
+  /// `quay` knows it, or as it is found beside `hull_W`, where the hull may lie.
   MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map, const MachineConfig& machine,
-                 const std::optional<Box>& region_W);
+                 const std::optional<Box>& region_W, const Box& hull_W);
 
   /// Whether there is anything that it could see.
-  [[nodiscard]] bool has_quay() const { return map_ != nullptr || (top_ && region_W_); }
+  [[nodiscard]] bool has_quay() const { return map_ != nullptr || top_ || learner_; }
 
   /// Once a frame, of which `time` is the middle. `views` of the scan, `stand` at its middle.
   [[nodiscard]] MachineFinding look(MeasurementTime time, const FilteredScan& scan,
@@ -37,6 +38,11 @@ class MachineWitness {
 
   /// A person has checked the joints.
   void forget();
+
+  /// Where this session saw the quay's top that nobody has measured; nothing where it need not be found.
+  [[nodiscard]] std::optional<SeenTop> found_top() const {
+    return learner_ ? learner_->first() : std::nullopt;
+  }
 
   /// What the last frame saw of the quay.
   [[nodiscard]] const Misplacement& seen() const { return seen_; }
@@ -54,6 +60,9 @@ class MachineWitness {
     std::optional<Charge> charge;
     MachineDoubt doubt;
   };
+  [[nodiscard]] const QuaySighting* sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
+                                                const MachineStand& stand);
+  [[nodiscard]] std::vector<Twist> doubt_of_reference() const;
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
   [[nodiscard]] bool acquits(const Verdict& verdict) const;
   [[nodiscard]] std::optional<Charge> charge_of_lateness(const MachineStand& stand) const;
@@ -64,8 +73,8 @@ class MachineWitness {
 
   std::shared_ptr<const QuayMap> map_;
   std::optional<QuayPlane> top_;
+  std::optional<TopLearner> learner_;
   MachineConfig machine_;
-  std::optional<Box> region_W_;
 
   QuaySight sight_;
   Misplacement seen_;

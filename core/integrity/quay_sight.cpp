@@ -14,15 +14,12 @@ bool in_reach(const QuayMap::Tile& tile, const Point& sensor_W) {
   return (tile.middle_W - sensor_W).squaredNorm() < reach * reach;
 }
 
+bool beneath_or_above(const Box& area_W, const Point& p) {
+  return p.x() >= area_W.min.x() && p.x() <= area_W.max.x() && p.y() >= area_W.min.y() &&
+         p.y() <= area_W.max.y();
+}
+
 }  // namespace
-
-Eigen::Vector3d QuayPlane::normal() const {
-  return Eigen::Vector3d(-std::tan(slope.x()), -std::tan(slope.y()), 1.0).normalized();
-}
-
-double QuayPlane::above(const Eigen::Vector3d& p_W) const {
-  return normal().dot(p_W - Eigen::Vector3d(0.0, 0.0, height));
-}
 
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
                                         std::span<const ScanView> views) {
@@ -46,15 +43,23 @@ const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& 
   return gather();
 }
 
-const QuaySighting& QuaySight::look_for(const QuayPlane& top, const FilteredScan& scan) {
+const QuaySighting& QuaySight::look_for(const QuayPlane& top, const FilteredScan& scan, const Box* area_W) {
   choose_returns(scan);
   const Eigen::Vector3d n_W = top.normal();
   for (const Point& p : returns_W_) {
+    if (area_W != nullptr && !beneath_or_above(*area_W, p)) {
+      continue;
+    }
     if (const double offset = top.above(p.cast<double>()); std::abs(offset) <= static_cast<double>(kGate)) {
       observe(SurfaceClass::horizontal, p, n_W, offset);
     }
   }
   return gather();
+}
+
+const Cloud& QuaySight::returns_of(const FilteredScan& scan) {
+  choose_returns(scan);
+  return returns_W_;
 }
 
 void QuaySight::forget() {

@@ -18,19 +18,12 @@
 #include <vector>
 
 #include "core/filter/scan_filter.hpp"
+#include "core/integrity/quay_top.hpp"
 #include "core/map/quay_map.hpp"
 #include "core/tracking/scan_view.hpp"
 #include "core/tracking/surface_rays.hpp"
 
 namespace hulltrack {
-
-/// The quay's top: z = height + tan(slope.x) * x + tan(slope.y) * y in W.
-struct QuayPlane {
-  double height = 0.0;                                           // m, at W's origin
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();               // rad, along X and along Y
-  [[nodiscard]] Eigen::Vector3d normal() const;                  // unit, upward
-  [[nodiscard]] double above(const Eigen::Vector3d& p_W) const;  // along the normal, m
-};
 
 /// A piece of the quay that a return has met.
 struct QuayObservation {
@@ -68,8 +61,12 @@ class QuaySight {
   [[nodiscard]] const QuaySighting& look_for(const QuayMap& map, const FilteredScan& scan,
                                              std::span<const ScanView> views);
 
-  /// Of the quay's top. Precondition: there is a region.
-  [[nodiscard]] const QuaySighting& look_for(const QuayPlane& top, const FilteredScan& scan);
+  /// Of the quay's top, in the level extent of `area_W` if there is one. Precondition: there is a region.
+  [[nodiscard]] const QuaySighting& look_for(const QuayPlane& top, const FilteredScan& scan,
+                                             const Box* area_W = nullptr);
+
+  /// For who does not know yet what to look for: the returns that a frame would be asked of.
+  [[nodiscard]] const Cloud& returns_of(const FilteredScan& scan);
 
   /// What was observed is of other joints than what comes.
   void forget();

@@ -32,6 +32,12 @@ double half_length(const HullMap* map) {
   return static_cast<double>((box.max - box.min).head<2>().maxCoeff()) / 2.0;
 }
 
+/// Where the hull may lie, W.
+Box berth_of(const HullMap& map, const HullConfig& hull) {
+  const Box box = bounding_box(map.cloud_H());
+  return {box.min + hull.envelope.min, box.max + hull.envelope.max};
+}
+
 }  // namespace
 
 struct HullTracker::Impl {
@@ -64,7 +70,7 @@ struct HullTracker::Impl {
         scan_filter(machine, std::move(sensors), c.hull.region),
         finder(c, *map),
         visibility(std::max(Integrity::kSight, c.health.metric_range)),
-        machine_witness(c.quay, std::move(quay), machine, c.hull.region),
+        machine_witness(c.quay, std::move(quay), machine, c.hull.region, berth_of(*map, c.hull)),
         joint_motion(machine),
         motion(bounding_box(map->cloud_H())),
         views(scan_filter.sensors().size()) {}
@@ -117,6 +123,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     const MachineStand standing = stand(joints, result.time);
     evidence.machine = machine_witness.look(result.time, filtered, views, standing);
     result.joints_confirmed = evidence.machine.confirmed;
+    result.found_top = machine_witness.found_top();
     const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
     search(evidence, result, confirmed);
     if (result.registered && !evidence.joints_on_trial &&

@@ -17,6 +17,7 @@
 #include "core/kinematics/joint_history.hpp"
 #include "core/kinematics/loader_kinematics.hpp"
 #include "core/map/hull_map.hpp"
+#include "core/integrity/quay_top.hpp"
 #include "core/map/quay_map.hpp"
 #include "core/tracking/metrics.hpp"
 #include "core/tracking/motion_products.hpp"
@@ -63,6 +64,8 @@ struct TrackResult {
   /// The scan itself shows that the joints are right on all six axes of the LiDAR's pose in W, by what stands
   /// still on the quay.
   bool joints_confirmed = false;
+  /// The quay's top as this session found it, from the frame on in which it did, if nobody has measured it.
+  std::optional<SeenTop> found_top;
 
   MotionProducts motion;
 };

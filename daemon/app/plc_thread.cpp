@@ -1,8 +1,10 @@
 #include "daemon/app/plc_thread.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "daemon/app/farewell.hpp"
+#include "daemon/app/found_top.hpp"
 #include "daemon/app/frame_pipeline.hpp"
 #include "daemon/app/live_time.hpp"
 #include "daemon/app/plc_reading.hpp"
@@ -34,6 +36,7 @@ PlcThread::PlcThread(const Config& config, Exchange& exchange, Pulse& pulse, Log
       gate_(joint_gate_config(config.plc)),
       publication_(before.publication),
       command_(before.command),
+      log_(log),
       watch_(config.plc, log, steady_now()),
       state_log_(log) {
   publication_.begin_anew(config.tracker.health.max_age);
@@ -116,6 +119,9 @@ void PlcThread::take_frame() {
   reason_ = frame.result.reason;
   gate_.frame_done(frame.first_firing, frame.last_firing, frame.result.joints_confirmed);
   publication_.frame(frame.result, steady_now(), frame.done - frame.last_received);
+  if (frame.result.found_top && !std::exchange(told_of_top_, true)) {
+    log_.write(LogLevel::notice, describe_found_top(*frame.result.found_top));
+  }
   unwritten_ = std::move(frame);
 }
 

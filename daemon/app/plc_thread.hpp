@@ -65,10 +65,12 @@ class PlcThread {
   JointGate gate_;
   Publication publication_;
   CommandLatch command_;
+  LogSink& log_;
   PlcWatch watch_;
   StateLog state_log_;
   PlcView view_;
   std::uint64_t frame_sequence_ = 0;
+  bool told_of_top_ = false;
   std::optional<FrameDone> unwritten_;  // the newest frame, until it stands in the registers
   std::string reason_;                  // the newest frame's
   SteadyTime last_written_{};

@@ -28,6 +28,28 @@ constexpr Nanoseconds kEndPatience = std::chrono::seconds(3);
 
 }  // namespace
 
+namespace {
+
+/// Why nothing on the quay can show a machine that is wrong from the start; empty if something can.
+std::string missing_quay_witness(const Prepared& prepared) {
+  const TrackerConfig& tracker = prepared.config.tracker;
+  const QuayConfig& quay = tracker.quay;
+  if (prepared.quay != nullptr || (quay.top_is_witness && quay.height && quay.slope && tracker.hull.region)) {
+    return {};
+  }
+  std::string line =
+      "no quay witness: of travel, slew, luff and mount only wrong signs and gross errors show. Set quay.map, "
+      "or quay.height and quay.slope, see hulltrackd.toml(5)";
+  if (!tracker.hull.region) {
+    line += "; the two keys need hull.region";
+  } else if (quay.top_is_witness) {
+    line += "; the two keys are told here when the quay's top has been seen for two seconds";
+  }
+  return line;
+}
+
+}  // namespace
+
 Service::Service(ServiceSetup setup, Signals& signals, SyslogSink& log)
     : setup_(std::move(setup)), signals_(signals), log_(log), restarts_(setup_.runtime_folder) {}
 
@@ -59,11 +81,8 @@ void Service::start_session(const Prepared& prepared) {
   for (std::string line; std::getline(remarks, line);) {
     log_.write(LogLevel::warning, line);
   }
-  const QuayConfig& quay = prepared.config.tracker.quay;
-  if (prepared.quay == nullptr && !(quay.height && quay.slope)) {
-    log_.write(LogLevel::notice,
-               "no quay witness: only wrong signs and gross errors of travel, slew, luff and mount show. Set "
-               "quay.map, or quay.height and quay.slope, see hulltrackd.toml(5)");
+  if (const std::string missing = missing_quay_witness(prepared); !missing.empty()) {
+    log_.write(LogLevel::notice, missing);
   }
   session_ = std::make_unique<Session>(prepared, log_, on_failure(), registers_);
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/percentile.hpp"
 #include "core/base/text.hpp"
+#include "daemon/app/found_top.hpp"
 
 namespace hulltrack {
 namespace {
@@ -87,6 +88,7 @@ void ReplaySummary::add(const TrackResult& r, double processing_ms) {
     }
   }
   frames_.push_back(frame);
+  found_top_ = r.found_top;
 }
 
 std::string ReplaySummary::text(bool with_timing) const {
@@ -96,6 +98,9 @@ std::string ReplaySummary::text(bool with_timing) const {
   std::string text = states_text() + figures_text(with_timing);
   if (!truth_.empty()) {
     text += errors_text() + reaction_text();
+  }
+  if (found_top_) {
+    text += "quay's top  " + quay_keys(*found_top_) + ", as the joints have it; for [quay] once they are checked\n";
   }
   return text;
 }

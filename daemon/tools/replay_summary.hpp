@@ -57,6 +57,7 @@ class ReplaySummary {
   std::vector<TruthRow> truth_;
   double max_speed_;
   std::vector<Frame> frames_;
+  std::optional<SeenTop> found_top_;
 };
 
 }  // namespace hulltrack

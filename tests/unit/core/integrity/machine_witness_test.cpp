@@ -15,6 +15,7 @@ using testing::quay_machine;
 using testing::QuayFrame;
 
 const Joints kWorking{0.0, radians(80.0), radians(-2.0)};
+const Box kHull{{-95.0F, 1.0F, -8.0F}, {95.0F, 33.0F, 20.0F}};
 const Box kRegion{{-95.0F, 0.6F, -10.0F}, {95.0F, 45.0F, 25.0F}};
 
 std::shared_ptr<const QuayMap> quay_map() {
@@ -27,7 +28,7 @@ class Frames {
  public:
   explicit Frames(std::shared_ptr<const QuayMap> map = quay_map(), const QuayConfig& quay = {},
                   int returns_of_each_surface = 400)
-      : witness_(quay, std::move(map), quay_machine(), kRegion), count_(returns_of_each_surface) {}
+      : witness_(quay, std::move(map), quay_machine(), kRegion, kHull), count_(returns_of_each_surface) {}
 
   MachineFinding run(int frames, const Joints& too_much, const std::vector<std::size_t>& surfaces = {0, 1, 2},
                      const Joints& rate = {}) {
@@ -152,8 +153,40 @@ TEST(MachineWitness, TheTopAloneShowsLuffAndConfirmsNothing) {
       << "a plane looks the same everywhere along itself";
 }
 
-TEST(MachineWitness, WithoutQuayItSaysNothing) {
+TEST(MachineWitness, ATopThatIsFoundShowsWhatHasChangedSinceAndConfirmsNothing) {
   Frames frames(nullptr);
+  EXPECT_TRUE(frames.witness().has_quay());
+  EXPECT_FALSE(frames.witness().found_top());
+  const MachineFinding honest = frames.run(60, {});
+  EXPECT_EQ(honest.faults, 0) << honest.reason;
+  EXPECT_FALSE(honest.confirmed);
+  ASSERT_TRUE(frames.witness().found_top());
+  EXPECT_NEAR(frames.witness().found_top()->plane.height, 0.0, 0.02);
+  const MachineFinding finding = frames.run(20, {0.0, 0.0, radians(2.0)});
+  EXPECT_EQ(finding.faults, fault::plc_value);
+  EXPECT_NE(finding.reason.find("found the quay's top"), std::string::npos) << finding.reason;
+  EXPECT_EQ(frames.run(20, {}).faults, 0) << "it is where it was again";
+}
+
+TEST(MachineWitness, ATopThatAWornMachineHasFoundAccusesNoWornMachine) {
+  Frames frames(nullptr);
+  frames.run(30, {0.03, radians(0.15), radians(0.15)});
+  const MachineFinding finding = frames.run(60, {-0.03, radians(-0.15), radians(-0.15)});
+  EXPECT_EQ(finding.faults, 0) << finding.reason;
+}
+
+TEST(MachineWitness, JointsThatHaveBeenCheckedFindTheTopAnew) {
+  Frames frames(nullptr);
+  frames.run(30, {0.0, 0.0, radians(2.0)});
+  EXPECT_NE(frames.run(20, {}).faults, 0);
+  frames.witness().forget();
+  EXPECT_EQ(frames.run(60, {}).faults, 0);
+}
+
+TEST(MachineWitness, WithoutQuayItSaysNothing) {
+  QuayConfig off;
+  off.top_is_witness = false;
+  Frames frames(nullptr, off);
   EXPECT_FALSE(frames.witness().has_quay());
   EXPECT_EQ(frames.run(20, {3.0, 0.0, 0.0}).faults, 0);
 }
