@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<double, 3> kNarrow = {0.10, 0.05, 0.05};
 constexpr std::array<double, 4> kWide = {0.30, 0.10, 0.05, 0.05};
 constexpr double kAgrees = 0.10;     // m: two kernels, five sigma of a return
-constexpr double kExplained = 0.8;   // of the observations: no need to look further
+constexpr double kExplained = 0.9;   // of the observations, in place 97 to 99 in 100: no need to look further
 constexpr double kMuchBetter = 1.1;  // times the observations explained: else the machine has its word
 
 // A return against a plane of the map, m, and by how much the sigma of a fit falls short because neighbouring

@@ -8,6 +8,8 @@ namespace {
 
 // Within this of a plane a ray has met it, m.
 constexpr float kOnPlane = 0.15F;
+constexpr std::array kRarestFirst = {SurfaceClass::transverse, SurfaceClass::longitudinal,
+                                     SurfaceClass::other, SurfaceClass::horizontal};
 
 bool in_reach(const QuayMap::Tile& tile, const Point& sensor_W) {
   const float reach = QuaySight::kFarthest + tile.radius;
@@ -23,7 +25,7 @@ bool beneath_or_above(const Box& area_W, const Point& p) {
 
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
                                         std::span<const ScanView> views) {
-  choose_returns(scan);
+  choose_returns_near(map, scan);
   nearest_.resize(returns_W_.size());
   map.tree().nearest(returns_W_, kGate, nearest_);
   for (std::size_t i = 0; i < returns_W_.size(); ++i) {
@@ -87,14 +89,18 @@ const QuaySighting& QuaySight::gather() {
   return seen_;
 }
 
-/// Begins a frame: takes returns that may be the quay's evenly out of the scan.
-void QuaySight::choose_returns(const FilteredScan& scan) {
+void QuaySight::begin_frame() {
   for (QuayCount& count : seen_.planes) {
     count.reached = 0;
     count.seen_through_W.clear();
   }
   returns_W_.clear();
   ++turn_;
+}
+
+/// Takes returns that may be the quay's evenly out of the scan.
+void QuaySight::choose_returns(const FilteredScan& scan) {
+  begin_frame();
   const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;
   std::size_t all = 0;
   for (const auto& of : scan.of) {
@@ -108,6 +114,38 @@ void QuaySight::choose_returns(const FilteredScan& scan) {
         returns_W_.push_back(scan.returns_W[lidar][i]);
         number = 0;
       }
+    }
+  }
+}
+
+/// Takes returns of each class evenly out of those that may be of it; one that may be of several is of the
+/// rarest.
+void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan) {
+  begin_frame();
+  const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;
+  for (Cloud& of_class : candidates_W_) {
+    of_class.clear();
+  }
+  for (std::size_t lidar = 0; lidar < scan.of.size(); ++lidar) {
+    for (std::size_t i = 0; i < scan.of[lidar].size(); ++i) {
+      if (scan.of[lidar][i] != wanted) {
+        continue;
+      }
+      const Point& p = scan.returns_W[lidar][i];
+      const SurfaceCells::Classes classes = map.classes_near(p);
+      for (const SurfaceClass surface : kRarestFirst) {
+        if ((classes >> static_cast<unsigned>(surface) & 1U) != 0) {
+          candidates_W_[static_cast<std::size_t>(surface)].push_back(p);
+          break;
+        }
+      }
+    }
+  }
+  for (std::size_t surface = 0; surface < candidates_W_.size(); ++surface) {
+    const Cloud& of_class = candidates_W_[surface];
+    const std::size_t stride = std::max<std::size_t>(1, (of_class.size() + kReturnsOf[surface] - 1) / kReturnsOf[surface]);
+    for (std::size_t i = turn_ % stride; i < of_class.size(); i += stride) {
+      returns_W_.push_back(of_class[i]);
     }
   }
 }

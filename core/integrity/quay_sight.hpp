@@ -46,12 +46,14 @@ struct QuaySighting {
 class QuaySight {
  public:
   static constexpr std::size_t kReturns = 300;   // a frame
+  /// Of them, with a map, those that may be of a class of surfaces: walls are rare and hold what the top does not.
+  static constexpr std::array<std::size_t, QuayMap::kClasses> kReturnsOf = {100, 100, 60, 40};
   static constexpr std::uint32_t kProbes = 300;  // a frame, class and LiDAR
   /// Observations are kept for so many frames, a second, and of each class the newest: few returns are of
   /// walls, and most of the quay's top.
   static constexpr std::uint32_t kFrames = 10;
   static constexpr std::size_t kOfClass = 150;
-  static constexpr float kGate = 0.6F;       // m: what lies farther off belongs to something else
+  static constexpr float kGate = QuayMap::kGate;
   static constexpr float kFarthest = 60.0F;  // m from the sensor
 
   /// `has_region`: the scan was cropped to the hull's region, so that what is outside is not hull.
@@ -72,7 +74,9 @@ class QuaySight {
   void forget();
 
  private:
+  void begin_frame();
   void choose_returns(const FilteredScan& scan);
+  void choose_returns_near(const QuayMap& map, const FilteredScan& scan);
   void observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);
   const QuaySighting& gather();
   void look_through(const QuayMap& map, std::size_t surface, const ScanView& view);
@@ -80,6 +84,7 @@ class QuaySight {
   bool has_region_;
   std::uint32_t turn_ = 0;  // which part of the returns and planes is looked at
   Cloud returns_W_;
+  std::array<Cloud, QuayMap::kClasses> candidates_W_;
   std::vector<Neighbour> nearest_;
   std::vector<RayEnd> rays_;
   struct Recent {

@@ -91,7 +91,11 @@ Cloud centres_of(const std::vector<QuayMap::Plane>& planes) {
 }  // namespace
 
 QuayMap::QuayMap(const Cloud& cloud_W)
-    : planes_(tile_by_tile(find_planes(cloud_W))), tiles_(tiles_of(planes_)), tree_(centres_of(planes_)) {}
+    : planes_(tile_by_tile(find_planes(cloud_W))), tiles_(tiles_of(planes_)), tree_(centres_of(planes_)) {
+  for (const Plane& plane : planes_) {
+    cells_.add(plane.centre_W, plane.normal_W, kGate, kBesides, plane.surface);
+  }
+}
 
 std::size_t QuayMap::count(SurfaceClass surface) const {
   const std::vector<Tile>& tiles = tiles_[static_cast<std::size_t>(surface)];

@@ -26,6 +26,8 @@ Cloud returns_on(const QuayPlane& plane, int count, unsigned seed = 1) {
   return cloud;
 }
 
+QuayPlane level(double height) { return {height, Eigen::Vector2d::Zero()}; }
+
 const Box kHull{{-90.0F, 0.0F, -10.0F}, {90.0F, 40.0F, 20.0F}};
 
 /// Lorries, stacks and people: anywhere above.
@@ -82,8 +84,8 @@ TEST(FindQuayTop, EqualOrWildReturnsAreNoTop) {
 
 TEST(TopLearner, FindsTheTopAfterTwoSecondsOnTheLoadersSideOfTheBerth) {
   TopLearner learner(kHull, -8.0);
-  Cloud frame = returns_on({0.0, {}}, 100);
-  for (const Point& p : returns_on({6.0, {}}, 200, 2)) {  // her deck: more returns than the quay
+  Cloud frame = returns_on({}, 100);
+  for (const Point& p : returns_on(level(6.0), 200, 2)) {  // her deck: more returns than the quay
     frame.emplace_back(p.x(), p.y() + 20.0F, p.z());
     frame.emplace_back(p.x(), p.y() + 56.0F, p.z());  // and that of a barge alongside
   }
@@ -99,7 +101,7 @@ TEST(TopLearner, TheLoaderMayStandOnTheOtherSideButNotWhereTheShipLies) {
   for (const auto& [rails_y, found] : {std::pair(50.0, true), std::pair(20.0, false), std::pair(-8.0, false)}) {
     TopLearner learner(kHull, rails_y);
     Cloud frame;
-    for (const Point& p : returns_on({2.0, {}}, 100)) {
+    for (const Point& p : returns_on(level(2.0), 100)) {
       frame.emplace_back(p.x(), p.y() + 56.0F, p.z());
     }
     MachineStand stand;
@@ -115,7 +117,7 @@ TEST(TopLearner, LooksForAnotherOneWhenItIsNotSeenForLongAndKeepsTheFirstForPeop
   TopLearner learner(kHull, -8.0);
   const auto learn = [&](double height) {
     for (int i = 0; i < TopLearner::kFrames; ++i) {
-      learner.add(returns_on({height, {}}, 100), {});
+      learner.add(returns_on(level(height), 100), {});
     }
   };
   learn(0.0);

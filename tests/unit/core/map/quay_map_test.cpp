@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
+#include <random>
 
 #include "tests/support/quay_scene.hpp"
 
@@ -27,6 +29,22 @@ TEST(QuayMap, HasPlanesOfEachSurfaceAndAllOfThemInTiles) {
     }
   }
   EXPECT_EQ(in_tiles, map.planes().size());
+}
+
+TEST(QuayMap, NamesTheClassOfEveryReturnThatAPlaneHoldsAndOfNoneFarAway) {
+  const QuayMap map(quay_cloud());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> off(-QuayMap::kGate, QuayMap::kGate);
+  std::uniform_real_distribution<float> beside(-0.3F, 0.3F);
+  for (const QuayMap::Plane& plane : map.planes()) {
+    const Point p = plane.centre_W + off(random) * plane.normal_W + Point(beside(random), 0.0F, 0.0F);
+    if (plane.holds(p, QuayMap::kGate)) {
+      EXPECT_NE(map.classes_near(p) & (1U << static_cast<unsigned>(plane.surface)), 0) << p.transpose();
+    }
+  }
+  EXPECT_EQ(map.classes_near({0.0F, -10.0F, 1.5F}), 0);
+  EXPECT_EQ(map.classes_near({1e9F, 0.0F, 0.0F}), 0);
+  EXPECT_EQ(map.classes_near(Point::Constant(std::numeric_limits<float>::quiet_NaN())), 0);
 }
 
 TEST(QuayMap, AWallSeenFromBothSidesIsNoWitness) {
