@@ -22,6 +22,7 @@ WORDS = {"travel": ("travel", "gantry"), "slew": ("slew",), "luff": ("luff",)}
 # What wear within its class hides of a joint where a map of the quay is in view (table of ICD 3.1): at d_x = 0, and
 # for each metre of travel.
 HIDDEN = {"travel": (0.13, 0.05 / 30), "slew": (0.4, 0.0), "luff": (0.8, 0.0)}  # m, deg
+IN_VIEW = 1.5  # the quay is in view where it hides no more than so many times that
 
 
 def at_times(plc, column, t_ns):
@@ -34,13 +35,39 @@ def lasting(condition, t_ns, seconds):
     return condition & (t_ns - t_ns[np.maximum(last_false, 0)] >= seconds * faults.SECOND)
 
 
-def shown_by_amount(plc, falsified, t_ns):
-    """At which of the times t_ns one of the joints is off by more than wear hides."""
+@dataclasses.dataclass
+class View:
+    """What the quay shows of an honest machine: from `hulltrack replay --joints`."""
+    t_ns: np.ndarray
+    hidden: dict  # by joint: m, deg; infinite where the scan does not tell
+
+    def hides(self, joint, t_ns):
+        """In the frames of t_ns, which are the honest machine's or fewer."""
+        return self.hidden[joint][np.minimum(np.searchsorted(self.t_ns, t_ns), len(self.t_ns) - 1)]
+
+
+def view(table):
+    """Of a table of judge.read_table()."""
+    return View(table["t_ns"], {joint: np.where(np.isnan(table[f"{joint}_hidden"]), np.inf, table[f"{joint}_hidden"])
+                                for joint in faults.JOINTS})
+
+
+def by_the_table(joint, plc, t_ns):
+    amount, for_each_metre = HIDDEN[joint]
+    return amount + for_each_metre * np.abs(at_times(plc, "d_x", t_ns))
+
+
+def in_view(seen, joint, plc, t_ns):
+    return seen.hides(joint, t_ns) <= IN_VIEW * by_the_table(joint, plc, t_ns)
+
+
+def shown_by_amount(plc, falsified, seen, t_ns):
+    """At which of the times t_ns one of the joints that the quay shows is off by more than wear hides."""
     shown_ = np.zeros(len(t_ns), dtype=bool)
-    for joint, (amount, for_each_metre) in HIDDEN.items():
-        column = faults.JOINTS[joint]
+    for joint, column in faults.JOINTS.items():
         off = np.abs(at_times(falsified, column, t_ns) - at_times(plc, column, t_ns))
-        shown_ |= off > amount + for_each_metre * np.abs(at_times(plc, "d_x", t_ns))
+        hidden = np.maximum(seen.hides(joint, t_ns), by_the_table(joint, plc, t_ns))
+        shown_ |= (off > hidden) & in_view(seen, joint, plc, t_ns)
     return shown_
 
 
@@ -88,19 +115,22 @@ def shown_by_speed(plc, joints, begin, machine, point):
     return min(moments, default=None)
 
 
-def owed(attack, plc, falsified, begin, with_map, machine, point, t_ns):
+def owed(attack, plc, falsified, begin, seen, machine, point, t_ns):
     """At which of the times t_ns the fault has shown for long enough: health 0, or the pose right. `plc` is the true
-    one."""
+    one, `seen` the View of the quay's map or None without one."""
     def since(moment):
         return np.zeros(len(t_ns), dtype=bool) if moment is None else t_ns > moment + NOTICE_S * faults.SECOND
 
-    way = "shown" if with_map else attack.without
+    way = "shown" if seen else attack.without
     if way == "never" or (attack.within_class and attack.name != "honest"):
         return since(None)
-    if not attack.joints:
+    if not attack.joints and attack.without == "shown":
         return since(begin)
-    if with_map:
-        return lasting(shown_by_amount(plc, falsified, t_ns) & (t_ns >= begin), t_ns, NOTICE_S)
+    if not attack.joints:
+        every = np.all([in_view(seen, joint, plc, t_ns) for joint in faults.JOINTS], axis=0)
+        return lasting(every & (t_ns >= begin), t_ns, NOTICE_S)
+    if seen:
+        return lasting(shown_by_amount(plc, falsified, seen, t_ns) & (t_ns >= begin), t_ns, NOTICE_S)
     return since(shown_by_motion(plc, attack.joints, begin) if way == "shown" else
                  shown_by_speed(plc, attack.joints, begin, machine, point))
 

@@ -44,7 +44,7 @@ struct Weighing {
     const Eigen::VectorXd weights = S_inverse * h;
     const double worth = h.dot(weights);
     if (!(worth > 0.0)) {
-      return {0.0, std::numeric_limits<double>::infinity(), 0.0};
+      return {};
     }
     const Eigen::VectorXd wear = (G.transpose() * weights).cwiseAbs();
     const double most_of_wear = std::min(wear.sum(), kSpread * wear.norm());
@@ -61,9 +61,6 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
   MachineDoubt doubt;
   const auto n = static_cast<Eigen::Index>(seen.measured.size());
   if (n == 0) {
-    for (JointDoubt& joint : doubt.joints) {
-      joint.hidden = std::numeric_limits<double>::infinity();
-    }
     return doubt;
   }
   Eigen::VectorXd y(n);

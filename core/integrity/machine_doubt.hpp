@@ -12,6 +12,8 @@
 // noise, the joint is accused. Frame W; metres, radians. Pure. Cost: a few 6 x 6 solutions, 10 us.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -23,8 +25,9 @@ namespace hulltrack {
 /// What wear within the class hides of one joint, and what was found.
 struct JointDoubt {
   double reads_too_much = 0.0;  // m, rad
-  double hidden = 0.0;          // up to here it may be wear, m, rad; infinite where nothing is measured
-  double gain = 0.0;            // how much better than wear it explains what is seen, in units of S
+  /// Up to here it may be wear, m, rad; infinite where nothing is measured.
+  double hidden = std::numeric_limits<double>::infinity();
+  double gain = 0.0;  // how much better than wear it explains what is seen, in units of S
 };
 
 struct MachineDoubt {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/status.hpp"
+#include "core/integrity/machine_doubt.hpp"
 
 namespace hulltrack {
 
@@ -11,6 +12,7 @@ struct MachineFinding {
   Faults faults = 0;       // plc_value while the machine is contradicted
   std::string reason;      // with figures; empty without a fault
   bool confirmed = false;  // a quay map confirms all six axes in this very frame
+  std::array<JointDoubt, 3> joints;  // by JointName: what the quay says of them in this frame
 };
 
 }  // namespace hulltrack

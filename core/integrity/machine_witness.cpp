@@ -97,7 +97,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   }
   const bool in_place = verdict.known && !verdict.charge;
   return {standing_ ? fault::plc_value : Faults{0}, standing_ ? standing_->reason : std::string{},
-          in_place && map_ != nullptr && seen_.holds_all()};
+          in_place && map_ != nullptr && seen_.holds_all(), verdict.doubt.joints};
 }
 
 /// Null while there is no top to look for yet.

@@ -98,52 +98,50 @@ void QuaySight::begin_frame() {
   ++turn_;
 }
 
-/// Takes returns that may be the quay's evenly out of the scan.
-void QuaySight::choose_returns(const FilteredScan& scan) {
-  begin_frame();
+/// Calls take(p) for `most` returns that may be the quay's at most, evenly out of the scan, others each frame.
+template <typename Take>
+void QuaySight::take_evenly(const FilteredScan& scan, std::size_t most, Take take) const {
   const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;
   std::size_t all = 0;
   for (const auto& of : scan.of) {
     all += static_cast<std::size_t>(std::count(of.begin(), of.end(), wanted));
   }
-  const std::size_t stride = std::max<std::size_t>(1, all / kReturns);
+  const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
   std::size_t number = turn_ % stride;
   for (std::size_t lidar = 0; lidar < scan.of.size(); ++lidar) {
     for (std::size_t i = 0; i < scan.of[lidar].size(); ++i) {
-      if (scan.of[lidar][i] == wanted && ++number == stride) {
-        returns_W_.push_back(scan.returns_W[lidar][i]);
+      if (scan.of[lidar][i] == wanted && ++number >= stride) {
+        take(scan.returns_W[lidar][i]);
         number = 0;
       }
     }
   }
 }
 
-/// Takes returns of each class evenly out of those that may be of it; one that may be of several is of the
-/// rarest.
+void QuaySight::choose_returns(const FilteredScan& scan) {
+  begin_frame();
+  take_evenly(scan, kReturns, [this](const Point& p) { returns_W_.push_back(p); });
+}
+
+/// Of each class evenly out of those that may be of it; one that may be of several is of the rarest.
 void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan) {
   begin_frame();
-  const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
-  for (std::size_t lidar = 0; lidar < scan.of.size(); ++lidar) {
-    for (std::size_t i = 0; i < scan.of[lidar].size(); ++i) {
-      if (scan.of[lidar][i] != wanted) {
-        continue;
-      }
-      const Point& p = scan.returns_W[lidar][i];
-      const SurfaceCells::Classes classes = map.classes_near(p);
-      for (const SurfaceClass surface : kRarestFirst) {
-        if ((classes >> static_cast<unsigned>(surface) & 1U) != 0) {
-          candidates_W_[static_cast<std::size_t>(surface)].push_back(p);
-          break;
-        }
+  take_evenly(scan, kLookedUp, [&](const Point& p) {
+    const SurfaceCells::Classes classes = map.classes_near(p);
+    for (const SurfaceClass surface : kRarestFirst) {
+      if ((classes >> static_cast<unsigned>(surface) & 1U) != 0) {
+        candidates_W_[static_cast<std::size_t>(surface)].push_back(p);
+        break;
       }
     }
-  }
+  });
   for (std::size_t surface = 0; surface < candidates_W_.size(); ++surface) {
     const Cloud& of_class = candidates_W_[surface];
-    const std::size_t stride = std::max<std::size_t>(1, (of_class.size() + kReturnsOf[surface] - 1) / kReturnsOf[surface]);
+    const std::size_t stride =
+        std::max<std::size_t>(1, (of_class.size() + kReturnsOf[surface] - 1) / kReturnsOf[surface]);
     for (std::size_t i = turn_ % stride; i < of_class.size(); i += stride) {
       returns_W_.push_back(of_class[i]);
     }

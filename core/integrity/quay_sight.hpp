@@ -45,9 +45,11 @@ struct QuaySighting {
 
 class QuaySight {
  public:
-  static constexpr std::size_t kReturns = 300;   // a frame
-  /// Of them, with a map, those that may be of a class of surfaces: walls are rare and hold what the top does not.
-  static constexpr std::array<std::size_t, QuayMap::kClasses> kReturnsOf = {100, 100, 60, 40};
+  static constexpr std::size_t kReturns = 300;  // a frame
+  /// With a map kLookedUp returns are asked what they may be of, and of each class so many are taken: walls are
+  /// rare and hold what the top does not.
+  static constexpr std::size_t kLookedUp = 1000;
+  static constexpr std::array<std::size_t, QuayMap::kClasses> kReturnsOf = {80, 80, 60, 40};
   static constexpr std::uint32_t kProbes = 300;  // a frame, class and LiDAR
   /// Observations are kept for so many frames, a second, and of each class the newest: few returns are of
   /// walls, and most of the quay's top.
@@ -75,6 +77,8 @@ class QuaySight {
 
  private:
   void begin_frame();
+  template <typename Take>
+  void take_evenly(const FilteredScan& scan, std::size_t most, Take take) const;
   void choose_returns(const FilteredScan& scan);
   void choose_returns_near(const QuayMap& map, const FilteredScan& scan);
   void observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);

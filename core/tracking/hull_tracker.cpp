@@ -124,6 +124,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     evidence.machine = machine_witness.look(result.time, filtered, views, standing);
     result.joints_confirmed = evidence.machine.confirmed;
     result.found_top = machine_witness.found_top();
+    result.joint_doubts = evidence.machine.joints;
     const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
     search(evidence, result, confirmed);
     if (result.registered && !evidence.joints_on_trial &&

@@ -17,6 +17,7 @@
 #include "core/kinematics/joint_history.hpp"
 #include "core/kinematics/loader_kinematics.hpp"
 #include "core/map/hull_map.hpp"
+#include "core/integrity/machine_doubt.hpp"
 #include "core/integrity/quay_top.hpp"
 #include "core/map/quay_map.hpp"
 #include "core/tracking/metrics.hpp"
@@ -64,6 +65,8 @@ struct TrackResult {
   /// The scan itself shows that the joints are right on all six axes of the LiDAR's pose in W, by what stands
   /// still on the quay.
   bool joints_confirmed = false;
+  /// By JointName: what the quay says of each joint in this frame.
+  std::array<JointDoubt, 3> joint_doubts;
   /// The quay's top as this session found it, from the frame on in which it did, if nobody has measured it.
   std::optional<SeenTop> found_top;
 

@@ -1,19 +1,9 @@
 #include "daemon/tools/frame_csv.hpp"
 
-#include <array>
-#include <cerrno>
-#include <charconv>
-#include <cstring>
+#include "daemon/tools/csv_field.hpp"
 
 namespace hulltrack {
 namespace {
-
-template <typename Number>
-void append(std::string& line, Number value) {
-  std::array<char, 40> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  line.append(text.data(), end).push_back(',');
-}
 
 void append_pose(std::string& line, const TrackResult& r) {
   if (!r.registered) {
@@ -21,10 +11,10 @@ void append_pose(std::string& line, const TrackResult& r) {
     return;
   }
   for (const double v : r.displacement) {
-    append(line, v);
+    append_field(line, v);
   }
   for (const double v : r.rpy) {
-    append(line, degrees(v));
+    append_field(line, degrees(v));
   }
 }
 
@@ -34,7 +24,7 @@ void append_metrics(std::string& line, const DistanceMetrics& m) {
     return;
   }
   for (const double v : {m.q1, m.mean, m.median, m.q3, m.rms}) {
-    append(line, v);
+    append_field(line, v);
   }
 }
 
@@ -42,7 +32,7 @@ void append_motion(std::string& line, const MotionProducts& motion) {
   if (motion.now) {
     for (const double v :
          {motion.now->draft, degrees(motion.now->heel), degrees(motion.now->trim), motion.now->surge}) {
-      append(line, v);
+      append_field(line, v);
     }
   } else {
     line += ",,,,";
@@ -52,7 +42,7 @@ void append_motion(std::string& line, const MotionProducts& motion) {
     constexpr double kMinute = 60.0;
     for (const double v : {motion.rate->draft * kHour, degrees(motion.rate->heel) * kHour,
                            degrees(motion.rate->trim) * kHour, motion.rate->surge * kMinute}) {
-      append(line, v);
+      append_field(line, v);
     }
   } else {
     line += ",,,,";
@@ -64,8 +54,8 @@ void append_bend(std::string& line, const TrackResult& r) {
     line += ",,";
     return;
   }
-  append(line, r.bend);
-  append(line, r.sigma_bend);
+  append_field(line, r.bend);
+  append_field(line, r.sigma_bend);
 }
 
 void append_covariance(std::string& line, const TrackResult& r) {
@@ -73,7 +63,7 @@ void append_covariance(std::string& line, const TrackResult& r) {
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) {
       if (known) {
-        append(line, r.covariance(row, column));
+        append_field(line, r.covariance(row, column));
       } else {
         line += ',';
       }
@@ -85,19 +75,19 @@ void append_covariance(std::string& line, const TrackResult& r) {
 
 std::string frame_csv_line(const TrackResult& r, std::optional<double> processing_ms) {
   std::string line;
-  append(line, r.frame);
-  append(line, to_ns(r.time));
-  append(line, static_cast<unsigned>(r.state));
-  append(line, r.health ? 1 : 0);
-  append(line, unsigned{r.faults});
+  append_field(line, r.frame);
+  append_field(line, to_ns(r.time));
+  append_field(line, static_cast<unsigned>(r.state));
+  append_field(line, r.health ? 1 : 0);
+  append_field(line, unsigned{r.faults});
   append_pose(line, r);
   append_metrics(line, r.metrics);
-  append(line, r.matched);
-  append(line, r.sigma_translation);
-  append(line, r.sigma_rotation < 0.0 ? r.sigma_rotation : degrees(r.sigma_rotation));
-  append(line, r.iterations);
+  append_field(line, r.matched);
+  append_field(line, r.sigma_translation);
+  append_field(line, r.sigma_rotation < 0.0 ? r.sigma_rotation : degrees(r.sigma_rotation));
+  append_field(line, r.iterations);
   if (processing_ms) {
-    append(line, *processing_ms);
+    append_field(line, *processing_ms);
   } else {
     line += ',';
   }
@@ -105,43 +95,12 @@ std::string frame_csv_line(const TrackResult& r, std::optional<double> processin
   append_bend(line, r);
   append_covariance(line, r);
   if (r.metrics.q1_expected) {
-    append(line, *r.metrics.q1_expected);
+    append_field(line, *r.metrics.q1_expected);
   } else {
     line += ',';
   }
   line.pop_back();
   return line;
-}
-
-Result<FrameCsv> FrameCsv::create(const std::filesystem::path& file) {
-  std::FILE* stream = std::fopen(file.c_str(), "wb");
-  if (stream == nullptr) {
-    return Error{file.string() + ": " + std::strerror(errno) + "; choose another file with --csv"};
-  }
-  FrameCsv csv(file.string(), stream);
-  if (Result<void> written = csv.put(kFrameCsvHeader); !written) {
-    return written.error();
-  }
-  return csv;
-}
-
-Result<void> FrameCsv::write(const TrackResult& result, std::optional<double> processing_ms) {
-  return put(frame_csv_line(result, processing_ms));
-}
-
-Result<void> FrameCsv::put(const std::string& line) {
-  if (std::fwrite(line.data(), 1, line.size(), stream_.get()) != line.size() ||
-      std::fputc('\n', stream_.get()) == EOF) {
-    return Error{name_ + ": " + std::strerror(errno)};
-  }
-  return {};
-}
-
-Result<void> FrameCsv::close() {
-  if (std::fclose(stream_.release()) != 0) {
-    return Error{name_ + ": " + std::strerror(errno)};
-  }
-  return {};
 }
 
 }  // namespace hulltrack

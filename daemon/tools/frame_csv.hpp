@@ -4,16 +4,11 @@
 // x..yaw are empty when nothing was registered, q1..rms when there are no metrics, ms without a timing. After
 // ms: draft..surge_rate (m, deg; m/h, deg/h, surge_rate m/min) are empty where unknown, so are bend and
 // sigma_bend (m), the upper triangle of the covariance, row by row (rad, m), and q1_expected (m).
-// Failure: a message with the file (disk full, no permission). Thread rule: one owner.
 #pragma once
 
-#include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include "core/base/result.hpp"
 #include "core/tracking/hull_tracker.hpp"
 
 namespace hulltrack {
@@ -28,23 +23,5 @@ inline constexpr const char* kFrameCsvHeader =
 
 /// Without a newline.
 [[nodiscard]] std::string frame_csv_line(const TrackResult& result, std::optional<double> processing_ms);
-
-class FrameCsv {
- public:
-  /// Creates or empties the file and writes the header.
-  [[nodiscard]] static Result<FrameCsv> create(const std::filesystem::path& file);
-  [[nodiscard]] Result<void> write(const TrackResult& result, std::optional<double> processing_ms);
-  [[nodiscard]] Result<void> close();
-
- private:
-  struct Closer {
-    void operator()(std::FILE* stream) const { std::fclose(stream); }
-  };
-  FrameCsv(std::string name, std::FILE* stream) : name_(std::move(name)), stream_(stream) {}
-  [[nodiscard]] Result<void> put(const std::string& line);
-
-  std::string name_;
-  std::unique_ptr<std::FILE, Closer> stream_;
-};
 
 }  // namespace hulltrack

@@ -11,7 +11,9 @@
 #include "daemon/app/load_map.hpp"
 #include "daemon/app/quay_file.hpp"
 #include "daemon/config/read_config.hpp"
+#include "daemon/tools/csv_file.hpp"
 #include "daemon/tools/frame_csv.hpp"
+#include "daemon/tools/joint_csv.hpp"
 #include "daemon/tools/recording_player.hpp"
 #include "daemon/tools/replay_summary.hpp"
 #include "daemon/tools/tools.hpp"
@@ -24,6 +26,7 @@ struct ReplayOptions {
   std::string folder;
   std::string config;
   std::string csv;
+  std::string joints;
   std::string metrics = "visible";
   bool no_timing = false;
   bool quiet = false;
@@ -131,16 +134,18 @@ std::shared_ptr<const QuayMap> load_quay(const std::filesystem::path& file) {
   return quay.map;
 }
 
+std::optional<CsvFile> table(const std::string& file, const char* header, const char* option) {
+  return file.empty() ? std::nullopt : std::optional(value_or_throw(CsvFile::create(file, header, option)));
+}
+
 void replay(const ReplayOptions& options) {
   must(check_recording_folder(options.folder));
   const Config config = load_config(options);
   std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
   ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
   FramePipeline pipeline(config, map_of(config), load_quay(config.quay_file));
-  std::optional<FrameCsv> csv;
-  if (!options.csv.empty()) {
-    csv = value_or_throw(FrameCsv::create(options.csv));
-  }
+  std::optional<CsvFile> csv = table(options.csv, kFrameCsvHeader, "--csv");
+  std::optional<CsvFile> joints = table(options.joints, kJointCsvHeader, "--joints");
 
   Scan scan;
   std::string broken_off;
@@ -160,13 +165,19 @@ void replay(const ReplayOptions& options) {
       const double ms = to_milliseconds(report.processing);
       summary.add(report.track, ms);
       if (csv) {
-        must(csv->write(report.track, options.no_timing ? std::nullopt : std::optional(ms)));
+        must(csv->write(frame_csv_line(report.track, options.no_timing ? std::nullopt : std::optional(ms))));
+      }
+      if (joints) {
+        must(joints->write(joint_csv_line(report.track)));
       }
       progress.show(player->share(), scan.frame_number);
     }
   }
   if (csv) {
     must(csv->close());
+  }
+  if (joints) {
+    must(joints->close());
   }
   if (!options.quiet && !summary.empty()) {
     std::fputs(
@@ -190,6 +201,8 @@ void add_replay(CLI::App& app) {
       ->required();
   command->add_option("--config", options->config, "configuration; default REC/hulltrackd.toml");
   command->add_option("--csv", options->csv, "write one line a frame to this file");
+  command->add_option("--joints", options->joints,
+                      "write what the quay says of travel, slew and luff to this file, one line a frame");
   command
       ->add_option(
           "--metrics", options->metrics,

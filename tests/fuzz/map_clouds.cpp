@@ -1,9 +1,10 @@
-// Builds and uses the maps of N clouds that are no ships: map_clouds [N [MOST [SEED]]].
+// Builds and uses the maps of N clouds that are no ships: map_clouds [N [MOST [SEED [FEWEST]]]].
 //
-// Clouds of 50 to MOST points (default 300 clouds of 3000, seed 1), each from a seed of its own, which is
-// printed with a cloud that cannot be used. Meant for a build with sanitizers: scripts/map-clouds. Exit 0
-// or 1.
+// Clouds of FEWEST to MOST points, as many of any size as of twice that size (default 300 clouds of 50 to 3000,
+// seed 1), each from a seed of its own, which is printed with a cloud that cannot be used. Meant for a build
+// with sanitizers: scripts/map-clouds. Exit 0 or 1.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -14,10 +15,11 @@ namespace {
 
 using hulltrack::Cloud;
 
-/// Of `most` points at most, and 50 at least.
-Cloud cloud_of(unsigned seed, std::size_t most) {
+Cloud cloud_of(unsigned seed, double fewest, double most) {
   std::mt19937 random(seed);
-  const std::size_t points = 50 + random() % (most - 49);
+  const double share = static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
+  const auto points =
+      static_cast<std::size_t>(std::lround(fewest * std::pow(most / fewest, share)));
   Cloud cloud;
   while (cloud.size() < points) {
     for (const hulltrack::Point& p : hulltrack::test::any_cloud(
@@ -37,8 +39,9 @@ int main(int argc, char** argv) {
   const unsigned long clouds = number(1, 300);
   const unsigned long most = number(2, 3000);
   const auto first = static_cast<unsigned>(number(3, 1));
-  if (most < 50) {
-    std::fprintf(stderr, "map_clouds: a cloud has 50 points or more\n");
+  const unsigned long fewest = number(4, 50);
+  if (fewest < 1 || most < fewest) {
+    std::fprintf(stderr, "map_clouds: MOST is below FEWEST, or that below 1\n");
     return 2;
   }
   const auto start = std::chrono::steady_clock::now();
@@ -47,7 +50,7 @@ int main(int argc, char** argv) {
   for (unsigned long i = 0; i < clouds; ++i) {
     const unsigned seed = first + static_cast<unsigned>(i);
     try {
-      Cloud cloud = cloud_of(seed, most);
+      Cloud cloud = cloud_of(seed, static_cast<double>(fewest), static_cast<double>(most));
       points += static_cast<double>(cloud.size());
       hulltrack::test::use_as_map(std::move(cloud));
     } catch (const std::exception& error) {

@@ -43,6 +43,13 @@ def attack(joints, without="shown"):
     return faults.Attack("made-up", "by hand", joints, None, without)
 
 
+def seen(table, **hidden):
+    """A quay that hides so much of each joint, the table's amounts unless told."""
+    t_ns = at(np.arange(0.05, (table["t_ns"][-1] - BEGAN) * 1e-9, 0.1))
+    amounts = {"travel": 0.13, "slew": 0.4, "luff": 0.8, **hidden}
+    return attack_judge.View(t_ns, {joint: np.broadcast_to(amount, len(t_ns)) for joint, amount in amounts.items()})
+
+
 OWED = np.ones(100, dtype=bool)
 
 
@@ -51,10 +58,11 @@ def owed_from(seconds, count=100):
 
 
 class WhenItShows(unittest.TestCase):
-    def shown(self, an_attack, table, begin=0.0, with_map=True, point=(0, 4, 3), falsified=None):
+    def shown(self, an_attack, table, begin=0.0, with_map=True, point=(0, 4, 3), falsified=None, **hidden):
         """s, from when on it has shown; None = never."""
         t_ns = at(np.arange(0.05, (table["t_ns"][-1] - BEGAN) * 1e-9, 0.1))
-        owed = attack_judge.owed(an_attack, table, falsified or table, at(begin), with_map, MACHINE, point, t_ns)
+        owed = attack_judge.owed(an_attack, table, falsified or table, at(begin),
+                                 seen(table, **hidden) if with_map else None, MACHINE, point, t_ns)
         return (t_ns[owed][0] - BEGAN) * 1e-9 - attack_judge.NOTICE_S if owed.any() else None
 
     def test_without_a_map_a_joint_has_to_move_two_metres_or_ten_degrees_after_the_beginning(self):
@@ -77,6 +85,25 @@ class WhenItShows(unittest.TestCase):
         self.assertIsNone(self.shown(attack(("slew",)), plc(30), falsified=waves))  # never for three seconds
         slow = plc(30, theta_r=lambda s: 0.6 * math.sin(2 * math.pi * s / 12.0))  # above 0.4 deg from 1.39 to 4.61 s
         self.assertAlmostEqual(self.shown(attack(("slew",)), plc(30), falsified=slow), 1.4, delta=0.21)
+
+    def test_a_joint_that_the_quay_hides_does_not_show_and_one_that_it_hides_a_little_more_shows_from_there(self):
+        table, false = plc(30), plc(30, theta_r=lambda s: 0.05 * s)
+        self.assertIsNone(self.shown(attack(("slew",)), table, falsified=false, slew=0.7))
+        self.assertIsNone(self.shown(attack(("slew",)), table, falsified=false, slew=math.inf))
+        self.assertAlmostEqual(self.shown(attack(("slew",)), table, falsified=false, slew=0.5), 10.0, delta=0.11)
+        half_way = np.where(np.arange(300) < 150, math.inf, 0.4)[:len(seen(table).t_ns)]
+        self.assertAlmostEqual(self.shown(attack(("slew",)), table, falsified=false, slew=half_way), 15.0, delta=0.21)
+
+    def test_a_mount_shows_while_the_quay_shows_all_joints(self):
+        self.assertAlmostEqual(self.shown(attack((), "never"), plc(10)), 0.05, delta=0.11)
+        self.assertIsNone(self.shown(attack((), "never"), plc(10), luff=math.inf))
+        self.assertIsNone(self.shown(attack((), "never"), plc(10), with_map=False))
+
+    def test_the_view_is_read_from_what_replay_writes(self):
+        table = {"t_ns": at([0.05]), "travel_hidden": np.array([0.1]), "slew_hidden": np.array([math.nan]),
+                 "luff_hidden": np.array([0.7])}
+        view = attack_judge.view(table)
+        self.assertEqual([view.hides(joint, at([0.05]))[0] for joint in ("travel", "slew")], [0.1, math.inf])
 
     def test_what_no_motion_is_needed_for_shows_at_once(self):
         self.assertAlmostEqual(self.shown(attack(()), plc(10), begin=4.0), 4.0, delta=0.11)

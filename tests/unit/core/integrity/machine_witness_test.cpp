@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/quay_scene.hpp"
 
 namespace hulltrack {
@@ -98,6 +100,15 @@ TEST(MachineWitness, ALorryThatHasLeftTheQuayIsNoFaultOfTheMachine) {
     const MachineFinding finding = frames.run(1, {});
     EXPECT_EQ(finding.faults, 0) << finding.reason;
   }
+}
+
+TEST(MachineWitness, SaysOfEachJointHowMuchItHides) {
+  Frames frames;
+  const MachineFinding finding = frames.run(20, {0.3, 0.0, 0.0});
+  EXPECT_NEAR(finding.joints[0].reads_too_much, 0.3, 0.05);
+  EXPECT_GT(finding.joints[0].hidden, 0.05);
+  EXPECT_LT(finding.joints[0].hidden, 0.2);
+  EXPECT_TRUE(std::isinf(Frames().run(5, {}, {}).joints[0].hidden)) << "of no quay nothing is known";
 }
 
 TEST(MachineWitness, AChargeStandsUntilASightThatWouldHaveShownItDoesNot) {

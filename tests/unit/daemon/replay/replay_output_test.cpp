@@ -7,12 +7,14 @@
 #include <sstream>
 
 #include "daemon/tools/frame_csv.hpp"
+#include "daemon/tools/joint_csv.hpp"
 #include "daemon/tools/replay_summary.hpp"
 
 namespace hulltrack {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 TrackResult result(std::uint32_t frame, double x, State state) {
@@ -67,6 +69,24 @@ TEST(FrameCsv, WhatQ1ShouldBeComesLast) {
   const std::string line = frame_csv_line(r, 1.5);
   EXPECT_EQ(columns(line)["q1_expected"], "0.0625");
   EXPECT_THAT(line, ::testing::EndsWith(",0.0625"));
+}
+
+TEST(JointCsv, AJointThatTheQuayDoesNotShowIsEmpty) {
+  TrackResult r = result(3, 0.1, State::tracking);
+  EXPECT_EQ(joint_csv_line(r), "3,350000000,,,,,,");
+  r.joint_doubts[0] = {.reads_too_much = -0.25, .hidden = 0.125};
+  r.joint_doubts[2] = {.reads_too_much = radians(2.0), .hidden = radians(0.5)};
+  EXPECT_EQ(joint_csv_line(r), "3,350000000,-0.25,0.125,,,2,0.5");
+}
+
+TEST(ReplaySummaryText, TellsTheQuaysTopThatWasFoundAsKeysToPaste) {
+  ReplaySummary summary({}, 0.3);
+  TrackResult r = result(1, 0.0, State::tracking);
+  summary.add(r, 1.0);
+  EXPECT_THAT(summary.text(false), Not(HasSubstr("quay's top")));
+  r.found_top = SeenTop{{-0.15, {radians(0.5), radians(-1.0)}}, {}, 0.001};
+  summary.add(r, 1.0);
+  EXPECT_THAT(summary.text(false), HasSubstr("height = -0.150, slope = [0.50, -1.00]"));
 }
 
 TEST(FrameCsv, MotionHasTheUnitsOfTheOperator) {

@@ -1,0 +1,27 @@
+#include "daemon/tools/joint_csv.hpp"
+
+#include <cmath>
+
+#include "daemon/tools/csv_field.hpp"
+
+namespace hulltrack {
+
+std::string joint_csv_line(const TrackResult& r) {
+  std::string line;
+  append_field(line, r.frame);
+  append_field(line, to_ns(r.time));
+  for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+    const JointDoubt& doubt = r.joint_doubts.at(static_cast<std::size_t>(joint));
+    if (std::isfinite(doubt.hidden)) {
+      const double unit = joint == JointName::travel ? 1.0 : degrees(1.0);
+      append_field(line, unit * doubt.reads_too_much);
+      append_field(line, unit * doubt.hidden);
+    } else {
+      line += ",,";
+    }
+  }
+  line.pop_back();
+  return line;
+}
+
+}  // namespace hulltrack
