@@ -56,8 +56,8 @@ struct Weighing {
 
 }  // namespace
 
-MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
-                           const Misplacement& seen, const std::vector<Twist>& of_reference) {
+MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
+                           const std::vector<Twist>& of_reference) {
   MachineDoubt doubt;
   const auto n = static_cast<Eigen::Index>(seen.measured.size());
   if (n == 0) {

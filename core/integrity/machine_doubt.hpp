@@ -38,7 +38,8 @@ struct MachineDoubt {
   bool beyond_class = false;  // a joint is accused, or the strain is too large
 };
 
-/// `of_reference`: twists about seen.centre_W, as wear's, by which what the quay is held against may be wrong.
+/// `of_reference`: twists about seen.centre_W, as wear's, by which what the quay is held against may be
+/// wrong.
 [[nodiscard]] MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
                                          const Misplacement& seen,
                                          const std::vector<Twist>& of_reference = {});

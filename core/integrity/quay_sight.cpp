@@ -98,7 +98,8 @@ void QuaySight::begin_frame() {
   ++turn_;
 }
 
-/// Calls take(p) for `most` returns that may be the quay's at most, evenly out of the scan, others each frame.
+/// Calls take(p) for `most` returns that may be the quay's at most, evenly out of the scan, others each
+/// frame.
 template <typename Take>
 void QuaySight::take_evenly(const FilteredScan& scan, std::size_t most, Take take) const {
   const ReturnOf wanted = has_region_ ? ReturnOf::surroundings : ReturnOf::hull;

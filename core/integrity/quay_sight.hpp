@@ -46,8 +46,8 @@ struct QuaySighting {
 class QuaySight {
  public:
   static constexpr std::size_t kReturns = 300;  // a frame
-  /// With a map kLookedUp returns are asked what they may be of, and of each class so many are taken: walls are
-  /// rare and hold what the top does not.
+  /// With a map kLookedUp returns are asked what they may be of, and of each class so many are taken: walls
+  /// are rare and hold what the top does not.
   static constexpr std::size_t kLookedUp = 1000;
   static constexpr std::array<std::size_t, QuayMap::kClasses> kReturnsOf = {80, 80, 60, 40};
   static constexpr std::uint32_t kProbes = 300;  // a frame, class and LiDAR

@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kFewestReturns = 300;
 constexpr double kLeastShare = 0.5;  // of the returns agree: else something else is as large as the top
 constexpr float kAgrees = 0.10F;     // m, five sigma of a return
-// Half of the returns are on the top, so one trial in eight has three of them: 100 fail once in 600,000 times,
-// and 500 are drawn for those that are discarded.
+// Half of the returns are on the top, so one trial in eight has three of them: 100 fail once in 600,000
+// times, and 500 are drawn for those that are discarded.
 constexpr int kTrials = 100;
 constexpr int kDraws = 500;
 constexpr std::size_t kJudges = 500;  // returns that a trial is judged by
@@ -144,9 +144,8 @@ std::optional<SeenTop> find_quay_top(std::span<const Point> returns_W) {
   const double n = static_cast<double>(sums.count);
   const Eigen::Vector2d mean = sums.H.block<2, 1>(0, 2) / n;
   const Eigen::Matrix2d spread = sums.H.topLeftCorner<2, 2>() / n - mean * mean.transpose();
-  const double least = std::sqrt(
-      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread, Eigen::EigenvaluesOnly)
-                        .eigenvalues()[0]));
+  const double least = std::sqrt(std::max(
+      0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread, Eigen::EigenvaluesOnly).eigenvalues()[0]));
   const Eigen::Vector2d slope(std::atan(double(plane->x())), std::atan(double(plane->y())));
   if (!(least >= kLeastSpread) || slope.cwiseAbs().maxCoeff() > kSteepestQuay) {
     return std::nullopt;

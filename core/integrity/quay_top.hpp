@@ -1,9 +1,10 @@
 // The quay's top as one large plane: as configured, or as a session finds it by itself.
 //
-// Of returns that are not the hull's most lie on the quay's top; what stands on it rises out of it and is less.
-// The plane that most returns agree on is found by trying planes through three of them, then fitted. Frame W,
-// metres, radians. Pure. Failure: no plane, where fewer than half agree on one, where they lie too close
-// together to tell its slope, or where it slopes by more than a quay does. Cost: 0.5 ms for 6,000 returns.
+// Of returns that are not the hull's most lie on the quay's top; what stands on it rises out of it and is
+// less. The plane that most returns agree on is found by trying planes through three of them, then fitted.
+// Frame W, metres, radians. Pure. Failure: no plane, where fewer than half agree on one, where they lie too
+// close together to tell its slope, or where it slopes by more than a quay does. Cost: 0.5 ms for 6,000
+// returns.
 #pragma once
 
 #include <Eigen/Core>

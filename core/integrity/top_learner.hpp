@@ -1,8 +1,9 @@
 // The quay's top that nobody has measured ([quay] height = "learn"): where this session saw it.
 //
-// Found from the returns of two seconds, on the side of the hull's berth on which the loader stands; found anew
-// where the machine looks at another part of the quay for long. It is as wrong as the joints were when it was found, so it can show
-// that they have changed since, never that they are right. Frame W, metres. Thread rule: one owner.
+// Found from the returns of two seconds, on the side of the hull's berth on which the loader stands; found
+// anew where the machine looks at another part of the quay for long. It is as wrong as the joints were when
+// it was found, so it can show that they have changed since, never that they are right. Frame W, metres.
+// Thread rule: one owner.
 #pragma once
 
 #include <cstdint>

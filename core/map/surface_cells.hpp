@@ -1,9 +1,10 @@
-// Of which classes of surface may a return at this place be? A quick answer, before the nearest one is asked for.
+// Of which classes of surface may a return at this place be? A quick answer, before the nearest one is asked
+// for.
 //
-// Cells of 0.6 m, kept where there are planes. A cell names every class that has a plane of which some point of
-// the cell is within reach; it may name some that have none, by a cell's size. Metres. No failure: far from all
-// planes no class is named. Thread rule: any number of threads may ask. Cost: 10 ns to ask, 3 us a plane to
-// build, some 300 bytes a plane that stands alone and 20 where many do.
+// Cells of 0.6 m, kept where there are planes. A cell names every class that has a plane of which some point
+// of the cell is within reach; it may name some that have none, by a cell's size. Metres. No failure: far
+// from all planes no class is named. Thread rule: any number of threads may ask. Cost: 10 ns to ask, 3 us a
+// plane to build, some 300 bytes a plane that stands alone and 20 where many do.
 #pragma once
 
 #include <array>

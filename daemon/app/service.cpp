@@ -38,8 +38,8 @@ std::string missing_quay_witness(const Prepared& prepared) {
     return {};
   }
   std::string line =
-      "no quay witness: of travel, slew, luff and mount only wrong signs and gross errors show. Set quay.map, "
-      "or quay.height and quay.slope, see hulltrackd.toml(5)";
+      "no quay witness: of travel, slew, luff and mount only wrong signs and gross errors show. Set "
+      "quay.map, or quay.height and quay.slope, see hulltrackd.toml(5)";
   if (!tracker.hull.region) {
     line += "; the two keys need hull.region";
   } else if (quay.top_is_witness) {

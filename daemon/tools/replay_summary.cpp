@@ -100,7 +100,8 @@ std::string ReplaySummary::text(bool with_timing) const {
     text += errors_text() + reaction_text();
   }
   if (found_top_) {
-    text += "quay's top  " + quay_keys(*found_top_) + ", as the joints have it; for [quay] once they are checked\n";
+    text += "quay's top  " + quay_keys(*found_top_) +
+            ", as the joints have it; for [quay] once they are checked\n";
   }
   return text;
 }

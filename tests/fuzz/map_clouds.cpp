@@ -1,8 +1,8 @@
 // Builds and uses the maps of N clouds that are no ships: map_clouds [N [MOST [SEED [FEWEST]]]].
 //
-// Clouds of FEWEST to MOST points, as many of any size as of twice that size (default 300 clouds of 50 to 3000,
-// seed 1), each from a seed of its own, which is printed with a cloud that cannot be used. Meant for a build
-// with sanitizers: scripts/map-clouds. Exit 0 or 1.
+// Clouds of FEWEST to MOST points, as many of any size as of twice that size (default 300 clouds of 50 to
+// 3000, seed 1), each from a seed of its own, which is printed with a cloud that cannot be used. Meant for a
+// build with sanitizers: scripts/map-clouds. Exit 0 or 1.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -18,8 +18,7 @@ using hulltrack::Cloud;
 Cloud cloud_of(unsigned seed, double fewest, double most) {
   std::mt19937 random(seed);
   const double share = static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
-  const auto points =
-      static_cast<std::size_t>(std::lround(fewest * std::pow(most / fewest, share)));
+  const auto points = static_cast<std::size_t>(std::lround(fewest * std::pow(most / fewest, share)));
   Cloud cloud;
   while (cloud.size() < points) {
     for (const hulltrack::Point& p : hulltrack::test::any_cloud(

@@ -98,7 +98,8 @@ TEST(TopLearner, FindsTheTopAfterTwoSecondsOnTheLoadersSideOfTheBerth) {
 }
 
 TEST(TopLearner, TheLoaderMayStandOnTheOtherSideButNotWhereTheShipLies) {
-  for (const auto& [rails_y, found] : {std::pair(50.0, true), std::pair(20.0, false), std::pair(-8.0, false)}) {
+  for (const auto& [rails_y, found] :
+       {std::pair(50.0, true), std::pair(20.0, false), std::pair(-8.0, false)}) {
     TopLearner learner(kHull, rails_y);
     Cloud frame;
     for (const Point& p : returns_on(level(2.0), 100)) {
