@@ -29,6 +29,25 @@ def at_times(plc, column, t_ns):
     return np.interp(t_ns - plc["t_ns"][0], plc["t_ns"] - plc["t_ns"][0], plc[column])
 
 
+def bridged(condition, t_ns, seconds=1.0):
+    """`condition`, and breaks in it that are shorter than that: a frame without joints, a lorry that drives by."""
+    whole = condition.copy()
+    for begin in np.flatnonzero(condition[:-1] & ~condition[1:]):
+        ahead = np.flatnonzero(condition[begin + 1:])
+        if len(ahead) and t_ns[begin + 1 + ahead[0]] - t_ns[begin] < seconds * faults.SECOND:
+            whole[begin:begin + 1 + ahead[0]] = True
+    return whole
+
+
+def until(shown_, cleared):
+    """Once shown it stays so until it is cleared."""
+    stands, result = False, np.zeros(len(shown_), dtype=bool)
+    for i in range(len(shown_)):
+        stands = bool(shown_[i]) or (stands and not cleared[i])
+        result[i] = stands
+    return result
+
+
 def lasting(condition, t_ns, seconds):
     """Where `condition` has been true for that long without a break."""
     last_false = np.maximum.accumulate(np.where(condition, -1, np.arange(len(condition))))
@@ -61,14 +80,29 @@ def in_view(seen, joint, plc, t_ns):
     return seen.hides(joint, t_ns) <= IN_VIEW * by_the_table(joint, plc, t_ns)
 
 
-def shown_by_amount(plc, falsified, seen, t_ns):
-    """At which of the times t_ns one of the joints that the quay shows is off by more than wear hides."""
-    shown_ = np.zeros(len(t_ns), dtype=bool)
-    for joint, column in faults.JOINTS.items():
-        off = np.abs(at_times(falsified, column, t_ns) - at_times(plc, column, t_ns))
+def off_by(plc, falsified, joint, t_ns):
+    column = faults.JOINTS[joint]
+    return np.abs(at_times(falsified, column, t_ns) - at_times(plc, column, t_ns))
+
+
+def owed_by_amount(plc, falsified, begin, seen, t_ns):
+    """At which of the times t_ns one of the joints has been off for long enough by more than wear hides where the quay
+    shows it, and has not been seen right since."""
+    result = np.zeros(len(t_ns), dtype=bool)
+    for joint in faults.JOINTS:
+        off, in_view_ = off_by(plc, falsified, joint, t_ns), in_view(seen, joint, plc, t_ns)
         hidden = np.maximum(seen.hides(joint, t_ns), by_the_table(joint, plc, t_ns))
-        shown_ |= (off > hidden) & in_view(seen, joint, plc, t_ns)
-    return shown_
+        shown_ = (off > hidden) & in_view_ & (t_ns >= begin)
+        result |= until(lasting(bridged(shown_, t_ns), t_ns, NOTICE_S), in_view_ & (off <= hidden))
+    return result
+
+
+def beyond_the_table(attack, plc, falsified, begin, t_ns):
+    """At which of the times t_ns a joint is off by more than the table says, whether the quay shows it or not."""
+    beyond = np.zeros(len(t_ns), dtype=bool)
+    for joint in attack.joints:
+        beyond |= (off_by(plc, falsified, joint, t_ns) > by_the_table(joint, plc, t_ns)) & (t_ns >= begin)
+    return lasting(beyond, t_ns, NOTICE_S)
 
 
 def shown_by_motion(plc, joints, begin):
@@ -128,9 +162,9 @@ def owed(attack, plc, falsified, begin, seen, machine, point, t_ns):
         return since(begin)
     if not attack.joints:
         every = np.all([in_view(seen, joint, plc, t_ns) for joint in faults.JOINTS], axis=0)
-        return lasting(every & (t_ns >= begin), t_ns, NOTICE_S)
+        return lasting(bridged(every & (t_ns >= begin), t_ns), t_ns, NOTICE_S)
     if seen:
-        return lasting(shown_by_amount(plc, falsified, seen, t_ns) & (t_ns >= begin), t_ns, NOTICE_S)
+        return owed_by_amount(plc, falsified, begin, seen, t_ns)
     return since(shown_by_motion(plc, attack.joints, begin) if way == "shown" else
                  shown_by_speed(plc, attack.joints, begin, machine, point))
 
@@ -143,6 +177,8 @@ class Verdict:
     wrong: int           # healthy, and off by more than 5 cm or 0.1 deg
     grave: int           # healthy, and off by more than may stay unseen
     late: int            # of these when the fault has shown for 3 s
+    owed: int            # frames in which it had shown for 3 s, healthy or not
+    beyond: int          # frames in which a joint had been off by more than the table's amount for 3 s, in view or not
     worst_m: float       # of healthy frames
     worst_deg: float
     shows_s: float       # from the beginning to when it first shows for 3 s; inf = nothing need ever tell
@@ -154,7 +190,7 @@ class Verdict:
     refused: bool = False
 
 
-REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, worst_m=0.0, worst_deg=0.0, shows_s=math.inf,
+REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, owed=0, beyond=0, worst_m=0.0, worst_deg=0.0, shows_s=math.inf,
                   fell_s=0.0, until_s=None, charged=0, bit=False, named=None, refused=True)
 
 
@@ -178,8 +214,8 @@ def fall(frames, after, seconds):
     return seconds(frames["t_ns"][zeros[0]]) if len(zeros) else math.inf
 
 
-def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN):
-    """`begin`: ns; `owed_`: of each frame, as owed() says. Tables of judge.read_table()."""
+def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN, beyond=0):
+    """`begin`: ns; `owed_`: of each frame, as owed() says; `beyond`: a number of frames. Tables of judge.read_table()."""
     twists = judge.error_twists(frames, truth)
     error = np.linalg.norm(twists[:, 3:], axis=1)
     turn = np.degrees(np.linalg.norm(twists[:, :3], axis=1))
@@ -198,7 +234,7 @@ def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN):
         return float(t_ns - begin) * 1e-9
 
     return Verdict(frames=int(after.sum()), healthy=int(healthy.sum()), wrong=int(wrong.sum()), grave=int(grave.sum()),
-                   late=int(late.sum()), worst_m=largest(error), worst_deg=largest(turn),
+                   late=int(late.sum()), owed=int(np.count_nonzero(owed_)), beyond=int(beyond), worst_m=largest(error), worst_deg=largest(turn),
                    shows_s=since_begin(frames["t_ns"][owed_][0]) - NOTICE_S if owed_.any() else math.inf,
                    fell_s=fall(frames, after, since_begin),
                    until_s=since_begin(frames["t_ns"][grave][-1]) if grave.any() else None,
@@ -221,6 +257,7 @@ def summary(verdicts):
         return max((getattr(v, name) for v in verdicts if getattr(v, name) is not None), default=None)
 
     return {"runs": len(verdicts), "refused": total("refused"), "frames": total("frames"), "healthy": total("healthy"),
-            "wrong": total("wrong"), "grave": total("grave"), "late": total("late"), "worst_m": most("worst_m"),
+            "wrong": total("wrong"), "grave": total("grave"), "late": total("late"), "owed": total("owed"),
+            "worst_m": most("worst_m"),
             "worst_deg": most("worst_deg"), "fell_s": most("fell_s"), "until_s": most("until_s"),
             "charged": total("charged"), "bit": told(verdicts, "bit"), "named": told(verdicts, "named")}

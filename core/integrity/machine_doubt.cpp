@@ -54,6 +54,10 @@ struct Weighing {
   }
 };
 
+/// Where wear hides more than this the joint hardly moves what is seen, and explains it by metres: a quay's
+/// top that slopes a little tells of travel only so. The strain tells then.
+double most_hidden(JointName joint) { return joint == JointName::travel ? 2.0 : radians(5.0); }  // m, rad
+
 }  // namespace
 
 MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
@@ -77,7 +81,8 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
     const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
     JointDoubt& here = doubt.joints.at(static_cast<std::size_t>(joint));
     here = weighing.doubt_along(h);
-    if (std::abs(here.reads_too_much) > here.hidden && here.gain > best) {
+    if (here.hidden <= most_hidden(joint) && std::abs(here.reads_too_much) > here.hidden &&
+        here.gain > best) {
       best = here.gain;
       doubt.accused = joint;
     }

@@ -22,6 +22,8 @@ constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
 // either.
 constexpr double kLeastShare = 0.5;
 constexpr std::uint32_t kFewestObservations = 60;
+constexpr std::uint32_t kFewestAsked = kFewestObservations / QuaySight::kFrames;  // a frame
+constexpr std::size_t kAllDirections = 6;
 // With eight in ten of the returns near planes on them, lorries and people among them, the quay is surely
 // found.
 constexpr double kSureShare = 0.8;
@@ -72,7 +74,8 @@ MachineWitness::MachineWitness(const QuayConfig& quay, std::shared_ptr<const Qua
 }
 
 MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& scan,
-                                    std::span<const ScanView> views, const MachineStand& stand) {
+                                    std::span<const ScanView> views, const MachineStand& stand,
+                                    bool on_trial) {
   if (!has_quay()) {
     return {};
   }
@@ -80,7 +83,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     forget_sight();  // the joints may be others by now
   }
   last_look_ = time;
-  const QuaySighting* sighting = sighting_of(scan, views, stand);
+  const QuaySighting* sighting = sighting_of(scan, views, stand, on_trial);
   if (sighting == nullptr) {
     return {};
   }
@@ -102,7 +105,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
 
 /// Null while there is no top to look for yet.
 const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
-                                                const MachineStand& stand) {
+                                                const MachineStand& stand, bool on_trial) {
   if (map_ != nullptr) {
     return &sight_.look_for(*map_, scan, views);
   }
@@ -111,11 +114,16 @@ const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::s
   }
   if (const auto& top = learner_->top()) {
     const QuaySighting& sighting = sight_.look_for(top->seen.plane, scan, &top->seen.area_W);
-    // What it is charged with was seen against this top: it is kept until it is acquitted.
-    learner_->seen(standing_ || sighting.observations.size() >= kFewestObservations);
+    // What it is charged with was seen against this top: it is kept until it is acquitted. So is one of which
+    // the place is in view, and it is not there.
+    learner_->seen(standing_ || sighting.asked >= kFewestAsked);
     return &sighting;
   }
-  learner_->add(sight_.returns_of(scan), stand);
+  if (on_trial) {
+    learner_->drop_gathered();
+  } else {
+    learner_->add(sight_.returns_of(scan), stand);
+  }
   return nullptr;
 }
 
@@ -129,8 +137,7 @@ std::vector<Twist> MachineWitness::doubt_of_reference() const {
   for (int i = 0; i < 2; ++i) {
     Twist tilt = Twist::Zero();
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
-    const Eigen::Vector3d middle = 0.5 * (top.seen.area_W.min + top.seen.area_W.max).cast<double>();
-    tilt << axis, axis.cross(seen_.centre_W - middle);
+    tilt << axis, axis.cross(seen_.centre_W - top.seen.middle_W);
     twists.push_back(kSigmasOfTop * top.seen.sigma_slope * tilt);
   }
   return twists;
@@ -150,12 +157,13 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   std::string through = surely_in_place ? std::string{} : seen_through();
   verdict.known = found || !through.empty();
   if (!through.empty()) {
-    verdict.charge = Charge{std::move(through), std::nullopt, 0.0};
+    verdict.charge = Charge{std::move(through), std::nullopt, 0.0, kAllDirections};
   } else if (found && verdict.doubt.beyond_class) {
     const auto& joint = verdict.doubt.accused;
     verdict.charge =
         Charge{(learner_ ? kSinceFound : "") + describe(verdict.doubt, seen_), joint,
-               joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0};
+               joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0,
+               seen_.measured.size()};
   } else if (found) {
     verdict.charge = charge_of_lateness(stand);
   }
@@ -175,7 +183,7 @@ std::optional<MachineWitness::Charge> MachineWitness::charge_of_lateness(const M
       format_text("the quay moves with the machine as if joint values were %.0f ms %s than plc.latency_ms "
                   "says",
                   1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
-      std::nullopt, 0.0};
+      std::nullopt, 0.0, kAllDirections};
 }
 
 /// A sight of the quay is of a machine that stands once all of its observations are.
@@ -198,7 +206,7 @@ bool MachineWitness::acquits(const Verdict& verdict) const {
     return false;
   }
   if (!standing_->joint) {
-    return seen_.holds_all();
+    return seen_.measured.size() >= standing_->directions;
   }
   return verdict.doubt.joints.at(static_cast<std::size_t>(*standing_->joint)).hidden <
          std::abs(standing_->amount);

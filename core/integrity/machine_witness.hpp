@@ -33,8 +33,10 @@ class MachineWitness {
   [[nodiscard]] bool has_quay() const { return map_ != nullptr || top_ || learner_; }
 
   /// Once a frame, of which `time` is the middle. `views` of the scan, `stand` at its middle.
+  /// `on_trial`: the joints are not believed yet, so nothing is learned by them.
   [[nodiscard]] MachineFinding look(MeasurementTime time, const FilteredScan& scan,
-                                    std::span<const ScanView> views, const MachineStand& stand);
+                                    std::span<const ScanView> views, const MachineStand& stand,
+                                    bool on_trial = false);
 
   /// A person has checked the joints.
   void forget();
@@ -53,6 +55,7 @@ class MachineWitness {
     std::string reason;
     std::optional<JointName> joint;  // if it is one joint's
     double amount = 0.0;             // that it reads too much, m, rad
+    std::size_t directions = 0;      // in how many the quay was seen
   };
   /// What one frame comes to: nothing known, or in place (no charge), or elsewhere.
   struct Verdict {
@@ -61,7 +64,7 @@ class MachineWitness {
     MachineDoubt doubt;
   };
   [[nodiscard]] const QuaySighting* sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
-                                                const MachineStand& stand);
+                                                const MachineStand& stand, bool on_trial);
   [[nodiscard]] std::vector<Twist> doubt_of_reference() const;
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
   [[nodiscard]] bool acquits(const Verdict& verdict) const;

@@ -52,6 +52,7 @@ const QuaySighting& QuaySight::look_for(const QuayPlane& top, const FilteredScan
     if (area_W != nullptr && !beneath_or_above(*area_W, p)) {
       continue;
     }
+    ++seen_.asked;
     if (const double offset = top.above(p.cast<double>()); std::abs(offset) <= static_cast<double>(kGate)) {
       observe(SurfaceClass::horizontal, p, n_W, offset);
     }
@@ -95,6 +96,7 @@ void QuaySight::begin_frame() {
     count.seen_through_W.clear();
   }
   returns_W_.clear();
+  seen_.asked = 0;
   ++turn_;
 }
 

@@ -41,6 +41,7 @@ struct QuayCount {
 struct QuaySighting {
   std::vector<QuayObservation> observations;        // of the last frames
   std::array<QuayCount, QuayMap::kClasses> planes;  // of this frame
+  std::uint32_t asked = 0;  // returns of this frame that lie where the top is looked for, on it or not
 };
 
 class QuaySight {

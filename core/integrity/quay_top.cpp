@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 namespace hulltrack {
 namespace {
@@ -27,6 +28,7 @@ constexpr double kLeastSpread = 3.0;
 constexpr double kSigma = 0.02;
 constexpr double kInflation = 2.0;
 constexpr double kShared = 0.005;
+constexpr double kOutlying = 0.05;  // of the returns at either end of the area: they may be of anything
 
 /// z = c.z + c.x * x + c.y * y.
 using Coefficients = Eigen::Vector3f;
@@ -91,7 +93,7 @@ std::optional<Coefficients> most_agreed_on(std::span<const Point> returns_W) {
 struct Agreement {
   Eigen::Matrix3d H = Eigen::Matrix3d::Zero();  // of (x, y, 1)
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  Box area;
+  double squares = 0.0;  // of what they are off by
   std::size_t count = 0;
 };
 
@@ -104,11 +106,30 @@ Agreement agreeing_with(const Coefficients& c, std::span<const Point> returns_W,
     const Eigen::Vector3d row(double(p.x()) - double(middle.x()), double(p.y()) - double(middle.y()), 1.0);
     sums.H += row * row.transpose();
     sums.b += row * (double(p.z()) - double(middle.z()));
-    sums.area.min = sums.count == 0 ? p : Point(sums.area.min.cwiseMin(p));
-    sums.area.max = sums.count == 0 ? p : Point(sums.area.max.cwiseMax(p));
+    sums.squares += double(off(c, p)) * double(off(c, p));
     ++sums.count;
   }
   return sums;
+}
+
+/// Along X and Y; z is the box's, of no meaning.
+Box area_of(const Coefficients& c, std::span<const Point> returns_W) {
+  std::array<std::vector<float>, 2> along;
+  for (const Point& p : returns_W) {
+    if (std::abs(off(c, p)) <= kAgrees) {
+      along[0].push_back(p.x());
+      along[1].push_back(p.y());
+    }
+  }
+  Box area;
+  for (int axis = 0; axis < 2; ++axis) {
+    std::vector<float>& values = along[static_cast<std::size_t>(axis)];
+    std::sort(values.begin(), values.end());
+    const auto outlying = static_cast<std::size_t>(kOutlying * double(values.size()));
+    area.min[axis] = values[outlying];
+    area.max[axis] = values[values.size() - 1 - outlying];
+  }
+  return area;
 }
 
 }  // namespace
@@ -150,9 +171,13 @@ std::optional<SeenTop> find_quay_top(std::span<const Point> returns_W) {
   if (!(least >= kLeastSpread) || slope.cwiseAbs().maxCoeff() > kSteepestQuay) {
     return std::nullopt;
   }
-  return SeenTop{{double(plane->z()), slope},
-                 sums.area,
-                 std::hypot(kInflation * kSigma / std::sqrt(n), kShared) / least};
+  // A quay is uneven, and a part of it slopes otherwise than the whole.
+  const double uneven = std::sqrt(std::max(0.0, sums.squares / n - kSigma * kSigma));
+  const double sigma = std::hypot(kInflation * kSigma / std::sqrt(n), kShared, uneven);
+  const Eigen::Vector2d at = mean + middle.head<2>().cast<double>();
+  const double height = double(plane->z()) + double(plane->x()) * at.x() + double(plane->y()) * at.y();
+  return SeenTop{
+      {double(plane->z()), slope}, area_of(*plane, returns_W), {at.x(), at.y(), height}, sigma / least};
 }
 
 }  // namespace hulltrack

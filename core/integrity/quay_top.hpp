@@ -26,8 +26,9 @@ struct QuayPlane {
 /// A quay's top as it was seen with the joints of that moment.
 struct SeenTop {
   QuayPlane plane;
-  Box area_W;                // the returns on it
-  double sigma_slope = 0.0;  // rad, of the axis that is known worse
+  Box area_W;                // of nine in ten returns on it, along X and along Y
+  Eigen::Vector3d middle_W;  // of the returns on it: what its tilt is known about
+  double sigma_slope = 0.0;  // rad, of the axis that is known worse, for any part of the area
 };
 
 constexpr double kSteepestQuay = 0.0873;  // rad, 5 deg: what [quay] slope may be

@@ -6,10 +6,10 @@ namespace hulltrack {
 
 bool TopLearner::may_be_quay(const Point& p_W) const {
   if (rails_y_W_ < hull_W_.min.y()) {
-    return p_W.y() < hull_W_.min.y();
+    return p_W.y() < hull_W_.min.y() && p_W.y() > rails_y_W_ - kBehindAxis;
   }
   if (rails_y_W_ > hull_W_.max.y()) {
-    return p_W.y() > hull_W_.max.y();
+    return p_W.y() > hull_W_.max.y() && p_W.y() < rails_y_W_ + kBehindAxis;
   }
   return false;  // a loader that stands where the ship lies: the configuration knows better than we do
 }
@@ -48,6 +48,7 @@ void TopLearner::forget() {
   drop_gathered();
   misses_ = 0;
   top_.reset();
+  first_.reset();
 }
 
 }  // namespace hulltrack

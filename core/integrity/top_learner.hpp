@@ -20,6 +20,9 @@ class TopLearner {
  public:
   static constexpr int kFrames = 20;
   static constexpr int kMisses = 50;  // frames in a row: five seconds of another part of the quay
+  /// m: from the slewing axis away from the berth. Behind the rails other things are level, too: a yard on a
+  /// fill, water and ships behind a jetty.
+  static constexpr float kBehindAxis = 10.0F;
 
   struct Top {
     SeenTop seen;
@@ -32,7 +35,7 @@ class TopLearner {
 
   /// Returns of one frame that are outside the hull's region. While there is no top().
   void add(std::span<const Point> returns_W, const MachineStand& stand);
-  /// Whether a frame saw enough of top().
+  /// Whether a frame had enough returns where top() lies, on it or not.
   void seen(bool enough);
   /// What was gathered so far is of other joints than what comes.
   void drop_gathered();
@@ -40,7 +43,7 @@ class TopLearner {
   void forget();
 
   [[nodiscard]] const std::optional<Top>& top() const { return top_; }
-  /// The first one that was found, for the people who may write it down.
+  /// The first one that was found since the joints were checked, for the people who may write it down.
   [[nodiscard]] const std::optional<SeenTop>& first() const { return first_; }
 
  private:

@@ -121,7 +121,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
     const PlaneIcpResult found = register_scan(evidence, result);
     look(mid.joints);
     const MachineStand standing = stand(joints, result.time);
-    evidence.machine = machine_witness.look(result.time, filtered, views, standing);
+    evidence.machine = machine_witness.look(result.time, filtered, views, standing, evidence.joints_on_trial);
     result.joints_confirmed = evidence.machine.confirmed;
     result.found_top = machine_witness.found_top();
     result.joint_doubts = evidence.machine.joints;

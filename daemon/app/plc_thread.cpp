@@ -1,7 +1,6 @@
 #include "daemon/app/plc_thread.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "daemon/app/farewell.hpp"
 #include "daemon/app/found_top.hpp"
@@ -119,8 +118,9 @@ void PlcThread::take_frame() {
   reason_ = frame.result.reason;
   gate_.frame_done(frame.first_firing, frame.last_firing, frame.result.joints_confirmed);
   publication_.frame(frame.result, steady_now(), frame.done - frame.last_received);
-  if (frame.result.found_top && !std::exchange(told_of_top_, true)) {
-    log_.write(LogLevel::notice, describe_found_top(*frame.result.found_top));
+  if (const auto& top = frame.result.found_top; top && quay_keys(*top) != told_top_) {
+    told_top_ = quay_keys(*top);
+    log_.write(LogLevel::notice, describe_found_top(*top));
   }
   unwritten_ = std::move(frame);
 }

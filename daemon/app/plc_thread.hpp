@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <stop_token>
+#include <string>
 
 #include "daemon/app/command_word.hpp"
 #include "daemon/app/exchange.hpp"
@@ -70,7 +71,7 @@ class PlcThread {
   StateLog state_log_;
   PlcView view_;
   std::uint64_t frame_sequence_ = 0;
-  bool told_of_top_ = false;
+  std::string told_top_;                // the keys of the quay's top that were told last
   std::optional<FrameDone> unwritten_;  // the newest frame, until it stands in the registers
   std::string reason_;                  // the newest frame's
   SteadyTime last_written_{};

@@ -43,7 +43,7 @@ std::string missing_quay_witness(const Prepared& prepared) {
   if (!tracker.hull.region) {
     line += "; the two keys need hull.region";
   } else if (quay.top_is_witness) {
-    line += "; the two keys are told here when the quay's top has been seen for two seconds";
+    line += "; the two keys are told here as soon as the quay's top was found in the scan";
   }
   return line;
 }

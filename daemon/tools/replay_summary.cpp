@@ -88,7 +88,7 @@ void ReplaySummary::add(const TrackResult& r, double processing_ms) {
     }
   }
   frames_.push_back(frame);
-  found_top_ = r.found_top;
+  found_top_ = r.found_top ? r.found_top : found_top_;
 }
 
 std::string ReplaySummary::text(bool with_timing) const {

@@ -94,6 +94,26 @@ class WhenItShows(unittest.TestCase):
         half_way = np.where(np.arange(300) < 150, math.inf, 0.4)[:len(seen(table).t_ns)]
         self.assertAlmostEqual(self.shown(attack(("slew",)), table, falsified=false, slew=half_way), 15.0, delta=0.21)
 
+    def test_short_breaks_of_the_view_count_and_a_long_one_ends_nothing_that_has_shown(self):
+        table, false = plc(30), plc(30, theta_r=lambda s: 1.0)
+        frames_ = np.arange(len(seen(table).t_ns))
+        flickers = np.where(frames_ % 20 == 0, math.inf, 0.4)
+        self.assertAlmostEqual(self.shown(attack(("slew",)), table, falsified=false, slew=flickers), 0.15, delta=0.21)
+        t_ns = seen(table).t_ns
+        gone = seen(table, slew=np.where(frames_ > 100, math.inf, 0.4))
+        owed = attack_judge.owed(attack(("slew",)), table, false, at(0.0), gone, MACHINE, (0, 4, 3), t_ns)
+        self.assertTrue(owed[-1])
+        mended = plc(30, theta_r=lambda s: 1.0 if s < 10 else 0.0)
+        owed = attack_judge.owed(attack(("slew",)), table, mended, at(0.0), seen(table), MACHINE, (0, 4, 3), t_ns)
+        self.assertEqual((bool(owed[98]), bool(owed[-1])), (True, False))
+
+    def test_what_is_beyond_the_table_counts_whether_it_is_in_view_or_not(self):
+        table, false = plc(10), plc(10, theta_r=lambda s: 1.0)
+        t_ns = seen(table).t_ns
+        count = attack_judge.beyond_the_table(attack(("slew",)), table, false, at(0.0), t_ns).sum()
+        self.assertEqual(count, len(t_ns) - 30)
+        self.assertEqual(attack_judge.beyond_the_table(attack(("luff",)), table, false, at(0.0), t_ns).sum(), 0)
+
     def test_a_mount_shows_while_the_quay_shows_all_joints(self):
         self.assertAlmostEqual(self.shown(attack((), "never"), plc(10)), 0.05, delta=0.11)
         self.assertIsNone(self.shown(attack((), "never"), plc(10), luff=math.inf))

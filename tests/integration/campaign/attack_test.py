@@ -62,7 +62,8 @@ elif sys.argv[1] == "replay":
     if "--joints" in sys.argv:
         with open(option("--joints"), "w") as table:
             table.write("frame,t_ns,travel_off,travel_hidden,slew_off,slew_hidden,luff_off,luff_hidden\n")
-            table.writelines(f"{i},{BEGAN + 100_000_000 * i + 50_000_000},0,0.1,0,0.3,,\n" for i in range(120))
+            table.writelines(f"{i},{BEGAN + 100_000_000 * i + 50_000_000},"
+                             f"{',' if 'NO_VIEW' in os.environ else '0,0.1'},0,0.3,,\n" for i in range(120))
         sys.exit()
     count = (len((folder / "truth.csv").read_text().splitlines()) - 101) // 10
     with open(option("--csv"), "w") as table:
@@ -135,6 +136,12 @@ class Attack(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertEqual(rows["worn-1", "map", "static", "1"]["charged"], "120")
         self.assertIn("worn-1 in static seed 1, quay:map: accused in 120 frames, and is within its class", done.stdout)
+
+    def test_a_map_of_the_quay_that_shows_too_little_is_told(self):
+        done, _ = self.run_attack("--attacks", "travel-bias+1", "--scenarios", "static", NO_VIEW="1")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("travel: of 90 frames in which it was off by more than wear hides the map of the quay showed that "
+                      "in 0 only", done.stdout)
 
     def test_recordings_share_the_attacks(self):
         done, rows = self.run_attack("--attacks", "honest,travel-bias*", "--seeds", "2", "--quay", "map", "--share", "5")

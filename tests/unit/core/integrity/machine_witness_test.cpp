@@ -189,6 +189,65 @@ TEST(MachineWitness, ATopThatAWornMachineHasFoundAccusesNoWornMachine) {
   EXPECT_EQ(finding.faults, 0) << finding.reason;
 }
 
+TEST(MachineWitness, WhatNoJointExplainsIsAcquittedByTheTopThatShowedIt) {
+  QuayConfig quay;
+  quay.height = 0.0;
+  quay.slope = Eigen::Vector2d::Zero();
+  MachineWitness witness(quay, nullptr, quay_machine(), kRegion, kHull);
+  MachineFinding finding;
+  const auto run = [&](const Pose& E, int from) {
+    for (int i = from; i < from + 20; ++i) {
+      const QuayFrame frame = quay_frame(kWorking, E, static_cast<unsigned>(i), 400, {0});
+      finding = witness.look(MeasurementTime{milliseconds(100) * i}, frame.scan, frame.views, frame.stand);
+    }
+  };
+  run(Pose(Eigen::Translation3d(0.0, 0.0, 0.5)), 0);
+  EXPECT_EQ(finding.faults, fault::plc_value);
+  run(Pose::Identity(), 20);
+  EXPECT_EQ(finding.faults, 0) << finding.reason;
+}
+
+TEST(MachineWitness, ATopOfAlmostNoSlopeAccusesNoTravelOfKilometres) {
+  QuayConfig quay;
+  quay.height = 0.0;
+  quay.slope = Eigen::Vector2d(1e-4, 1e-4);
+  MachineWitness witness(quay, nullptr, quay_machine(), kRegion, kHull);
+  MachineFinding finding;
+  for (int i = 0; i < 20; ++i) {
+    const QuayFrame frame =
+        quay_frame(kWorking, Pose(Eigen::Translation3d(0.0, 0.0, 0.5)), static_cast<unsigned>(i), 400, {0});
+    finding = witness.look(MeasurementTime{milliseconds(100) * i}, frame.scan, frame.views, frame.stand);
+  }
+  EXPECT_EQ(finding.faults, fault::plc_value);
+  EXPECT_EQ(finding.reason.find("travel"), std::string::npos) << finding.reason;
+}
+
+TEST(MachineWitness, ATopIsNotFoundWithJointsOnTrialNorForgottenWhileItsPlaceIsInView) {
+  MachineWitness witness({}, nullptr, quay_machine(), kRegion, kHull);
+  int number = 0;
+  const auto run = [&](int frames, double height, bool on_trial) {
+    for (int i = 0; i < frames; ++i, ++number) {
+      const QuayFrame frame = quay_frame(kWorking, Pose(Eigen::Translation3d(0.0, 0.0, height)),
+                                         static_cast<unsigned>(number), 400, {0});
+      (void)witness.look(MeasurementTime{milliseconds(100) * number}, frame.scan, frame.views, frame.stand,
+                         on_trial);
+    }
+  };
+  run(60, 0.0, true);
+  EXPECT_FALSE(witness.found_top());
+  run(30, 0.0, false);
+  ASSERT_TRUE(witness.found_top());
+  run(100, 2.0, false);  // a sensor that hangs two metres lower: the top is beyond the gate
+  Joints luffed = kWorking;
+  luffed.theta_p += radians(2.0);
+  const QuayFrame back = quay_frame(luffed, misplaced(luffed, kWorking), 999, 400, {0});
+  MachineFinding finding;
+  for (int i = 0; i < 20; ++i, ++number) {
+    finding = witness.look(MeasurementTime{milliseconds(100) * number}, back.scan, back.views, back.stand);
+  }
+  EXPECT_EQ(finding.faults, fault::plc_value) << "it was found at 0, and is looked for there";
+}
+
 TEST(MachineWitness, JointsThatHaveBeenCheckedFindTheTopAnew) {
   Frames frames(nullptr);
   frames.run(30, {0.0, 0.0, radians(2.0)}, kMostlyTop);

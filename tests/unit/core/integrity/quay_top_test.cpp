@@ -52,10 +52,20 @@ TEST(FindQuayTop, FindsAnyQuaysTopBesideWhatStandsOnIt) {
       ASSERT_TRUE(found) << height << " " << slope_deg.transpose();
       EXPECT_NEAR(found->plane.height, height, 0.02);
       EXPECT_NEAR(degrees((found->plane.slope - truth.slope).norm()), 0.0, 0.15);
-      EXPECT_LT(degrees(found->sigma_slope), 0.15);
-      EXPECT_NEAR(found->area_W.min.y(), -15.0F, 0.5F);
+      EXPECT_LT(degrees(found->sigma_slope), 0.35);
+      EXPECT_NEAR(found->area_W.min.y(), -14.3F, 0.4F) << "one in twenty beyond";
+      EXPECT_NEAR(found->middle_W.y(), -8.0, 0.5);
     }
   }
+}
+
+TEST(FindQuayTop, KnowsTheSlopeOfAnUnevenQuayWorse) {
+  Cloud even = returns_on({}, 1500);
+  Cloud uneven = even;
+  for (Point& p : uneven) {
+    p.z() += 0.05F * std::sin(p.x() / 3.0F);
+  }
+  EXPECT_GT(find_quay_top(uneven)->sigma_slope, 2.0 * find_quay_top(even)->sigma_slope);
 }
 
 TEST(FindQuayTop, SaysNothingWhereNoPlaneHasMostReturns) {
@@ -88,6 +98,7 @@ TEST(TopLearner, FindsTheTopAfterTwoSecondsOnTheLoadersSideOfTheBerth) {
   for (const Point& p : returns_on(level(6.0), 200, 2)) {  // her deck: more returns than the quay
     frame.emplace_back(p.x(), p.y() + 20.0F, p.z());
     frame.emplace_back(p.x(), p.y() + 56.0F, p.z());  // and that of a barge alongside
+    frame.emplace_back(p.x(), p.y() - 20.0F, p.z());  // and of a ship behind the jetty
   }
   for (int i = 1; i <= TopLearner::kFrames; ++i) {
     EXPECT_FALSE(learner.top());
@@ -137,6 +148,7 @@ TEST(TopLearner, LooksForAnotherOneWhenItIsNotSeenForLongAndKeepsTheFirstForPeop
   EXPECT_NEAR(learner.first()->plane.height, 0.0, 0.02);
   learner.forget();
   EXPECT_FALSE(learner.top());
+  EXPECT_FALSE(learner.first()) << "it was seen with joints that have been mended since";
 }
 
 }  // namespace

@@ -84,7 +84,9 @@ TEST(ReplaySummaryText, TellsTheQuaysTopThatWasFoundAsKeysToPaste) {
   TrackResult r = result(1, 0.0, State::tracking);
   summary.add(r, 1.0);
   EXPECT_THAT(summary.text(false), Not(HasSubstr("quay's top")));
-  r.found_top = SeenTop{{-0.15, {radians(0.5), radians(-1.0)}}, {}, 0.001};
+  r.found_top = SeenTop{{-0.15, {radians(0.5), radians(-1.0)}}, {}, Eigen::Vector3d::Zero(), 0.001};
+  summary.add(r, 1.0);
+  r.found_top.reset();  // a frame that was not looked at
   summary.add(r, 1.0);
   EXPECT_THAT(summary.text(false), HasSubstr("height = -0.150, slope = [0.50, -1.00]"));
 }
