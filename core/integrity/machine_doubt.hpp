@@ -35,7 +35,8 @@ struct MachineDoubt {
   double strain = 0.0;               // y . S^-1 y, the wear that would be needed, squared and summed
   double most_strain = 0.0;          // what wear within the class can come to
   std::optional<JointName> accused;
-  bool beyond_class = false;  // a joint is accused, or the strain is too large
+  bool mount = false;         // the LiDAR's mount alone, shifted or turned about one axis, is beyond wear
+  bool beyond_class = false;  // a joint is accused, or the mount is, or the strain is too large
 };
 
 /// `of_reference`: twists about seen.centre_W, as wear's, by which what the quay is held against may be

@@ -68,6 +68,16 @@ Twist lateness_twist(const MachineConfig& machine, const MachineStand& stand,
          stand.rate.theta_p * joint_twist(machine, stand, JointName::luff, centre_W);
 }
 
+std::array<Twist, 6> mount_twists(const MachineStand& stand, const Eigen::Vector3d& centre_W) {
+  std::array<Twist, 6> twists;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
+    twists[static_cast<std::size_t>(i)] = shift(axis);
+    twists[static_cast<std::size_t>(i) + 3] = 0.1 * about(axis, stand.sensor_W, centre_W);
+  }
+  return twists;
+}
+
 std::vector<Twist> fast_wear_twists(const MachineConfig& machine, const MachineStand& stand,
                                     const Eigen::Vector3d& centre_W) {
   // How far the boom's end turns when it sags depends on the boom: the two count apart.

@@ -29,6 +29,10 @@ struct MachineStand {
 [[nodiscard]] Twist joint_twist(const MachineConfig& machine, const MachineStand& stand, JointName joint,
                                 const Eigen::Vector3d& centre_W);
 
+/// Twists about `centre_W` of a sensor that hangs a metre off along an axis of W, or is turned by a tenth of
+/// a radian about one.
+[[nodiscard]] std::array<Twist, 6> mount_twists(const MachineStand& stand, const Eigen::Vector3d& centre_W);
+
 /// All that wear within the class can do, each term at its limit: twists about `centre_W`.
 [[nodiscard]] std::vector<Twist> wear_twists(const MachineConfig& machine, const MachineStand& stand,
                                              const Eigen::Vector3d& centre_W);

@@ -113,6 +113,18 @@ TEST(MachineDoubt, AMountThatIsTurnedIsBeyondTheClassThoughNoJointIs) {
   EXPECT_FALSE(describe(doubt, seen).empty());
 }
 
+TEST(MachineDoubt, AMountThatHangsThirtyCentimetresOffIsBeyondTheClassAlongEveryAxis) {
+  for (const double slew : {56.0, 90.0, 124.0}) {
+    const MachineStand stand = stand_at({5.0, radians(slew), 0.0});
+    for (int axis = 0; axis < 3; ++axis) {
+      Twist twist = Twist::Zero();
+      twist[3 + axis] = 0.3;
+      EXPECT_TRUE(doubt_machine(quay_machine(), stand, measured(twist, kQuay)).beyond_class)
+          << "axis " << axis << ", " << slew;
+    }
+  }
+}
+
 TEST(MachineDoubt, WhatIsNotMeasuredHidesEverything) {
   const MachineStand stand = stand_at(kWorking);
   const MachineDoubt doubt = doubt_machine(quay_machine(), stand, measured(Twist::Zero(), kQuay, 0));
