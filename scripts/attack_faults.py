@@ -14,7 +14,7 @@ CALM_S = 8.0          # a fault that comes about later begins after so much of t
 MOVES_WITHIN_S = 1.0  # a joint that starts to move goes farther than MOVES within that
 JOINTS = {"travel": "d_x", "slew": "theta_r", "luff": "theta_p"}
 UNITS = {"travel": "m", "slew": "deg", "luff": "deg"}
-SHOWING_MOTION = {"travel": 2.0, "slew": 10.0, "luff": 10.0}  # a motion of that length shows any fault of that joint
+SHOWING_MOTION = {"travel": 2.0, "slew": 10.0, "luff": 10.0}  # without a map that much shows a fault
 MOVES = {"travel": 0.1, "slew": 0.3, "luff": 0.1}
 
 
@@ -38,10 +38,10 @@ class Site:
 class Attack:
     name: str
     sentence: str
-    joints: tuple      # whose motion shows it; empty: it shows at once
+    joints: tuple      # whose values are false; empty: it shows at once, a mount where the quay shows all joints
     falsify: object    # Site -> ns at which the fault begins
-    without: str       # without a map of the quay: "shown" as with one; "speed": when the hull then seems faster than
-                       # max_speed; "never": nothing need tell
+    without: str       # without a map of the quay: "shown" by the joint's motion, or at once; "speed": when the hull
+                       # then seems faster than max_speed; "never": nothing need tell
     quay_map_only: bool = False
     within_class: bool = False  # a machine that is worn as far as it may be: must not be accused
 

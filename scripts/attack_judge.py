@@ -190,8 +190,8 @@ class Verdict:
     refused: bool = False
 
 
-REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, owed=0, beyond=0, worst_m=0.0, worst_deg=0.0, shows_s=math.inf,
-                  fell_s=0.0, until_s=None, charged=0, bit=False, named=None, refused=True)
+REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, owed=0, beyond=0, worst_m=0.0, worst_deg=0.0,
+                  shows_s=math.inf, fell_s=0.0, until_s=None, charged=0, bit=False, named=None, refused=True)
 
 
 def names_joint(frames, down, joints):
@@ -215,7 +215,8 @@ def fall(frames, after, seconds):
 
 
 def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN, beyond=0):
-    """`begin`: ns; `owed_`: of each frame, as owed() says; `beyond`: a number of frames. Tables of judge.read_table()."""
+    """`begin`: ns; `owed_`: of each frame, as owed() says; `beyond`: a number of frames. Tables of
+    judge.read_table()."""
     twists = judge.error_twists(frames, truth)
     error = np.linalg.norm(twists[:, 3:], axis=1)
     turn = np.degrees(np.linalg.norm(twists[:, :3], axis=1))
@@ -234,7 +235,8 @@ def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN, beyond=0
         return float(t_ns - begin) * 1e-9
 
     return Verdict(frames=int(after.sum()), healthy=int(healthy.sum()), wrong=int(wrong.sum()), grave=int(grave.sum()),
-                   late=int(late.sum()), owed=int(np.count_nonzero(owed_)), beyond=int(beyond), worst_m=largest(error), worst_deg=largest(turn),
+                   late=int(late.sum()), owed=int(np.count_nonzero(owed_)), beyond=int(beyond),
+                   worst_m=largest(error), worst_deg=largest(turn),
                    shows_s=since_begin(frames["t_ns"][owed_][0]) - NOTICE_S if owed_.any() else math.inf,
                    fell_s=fall(frames, after, since_begin),
                    until_s=since_begin(frames["t_ns"][grave][-1]) if grave.any() else None,
