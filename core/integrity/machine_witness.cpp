@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/base/text.hpp"
@@ -33,9 +34,6 @@ constexpr double kSureShare = 0.8;
 // hundred is seen through, at an edge: of 12 a half are not.
 constexpr double kMostSeenThrough = 0.5;
 constexpr double kFewestReached = 12.0;
-// What leaves the quay in one piece is a lorry or a row of containers, 20 m long at most; a machine that is
-// elsewhere sees through what stands farther apart as well.
-constexpr float kLongestThing = 25.0F;  // m
 constexpr std::size_t kRemembered = 100;
 // A top that the session has found may be turned by so many of its sigmas.
 constexpr double kSigmasOfTop = 3.0;
@@ -64,7 +62,7 @@ float extent(const std::deque<Point>& points) {
 MachineWitness::MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map,
                                const MachineConfig& machine, const std::optional<Box>& region_W,
                                const Box& hull_W)
-    : map_(std::move(map)), machine_(machine), sight_(region_W.has_value()) {
+    : map_(std::move(map)), machine_(machine), sight_(region_W.has_value()), search_(region_W.has_value()) {
   if (map_ == nullptr && region_W && quay.top_is_witness) {
     top_ = known_top(quay);
     if (!top_) {
@@ -90,6 +88,12 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   remember(*sighting);
   seen_ = find_misplacement(sighting->observations);
   Verdict verdict = judge(stand);
+  if (map_ != nullptr) {
+    if (auto charge = charge_of_elsewhere(scan, *sighting, stand)) {
+      verdict.charge = std::move(charge);
+      verdict.known = true;
+    }
+  }
   note_rest(time, stand, verdict);
   const bool acquitted = !standing_ || acquits(verdict);
   charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : verdict.known ? 0 : charges_in_a_row_;
@@ -98,9 +102,18 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   } else if (acquitted) {
     standing_.reset();
   }
-  const bool in_place = verdict.known && !verdict.charge;
-  return {standing_ ? fault::plc_value : Faults{0}, standing_ ? standing_->reason : std::string{},
-          in_place && map_ != nullptr && seen_.holds_all(), verdict.doubt.joints};
+  MachineFinding finding{
+      standing_ ? fault::plc_value : Faults{0}, standing_ ? standing_->reason : std::string{},
+      verdict.known && !verdict.charge && map_ != nullptr && seen_.holds_all(), verdict.doubt.joints};
+  if (map_ != nullptr) {
+    for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+      if (!QuaySearch::would_find(joint, *sighting, seen_, machine_, stand)) {
+        finding.joints.at(static_cast<std::size_t>(joint)).hidden = std::numeric_limits<double>::infinity();
+        finding.confirmed = false;
+      }
+    }
+  }
+  return finding;
 }
 
 /// Null while there is no top to look for yet.
@@ -159,11 +172,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   if (!through.empty()) {
     verdict.charge = Charge{std::move(through), std::nullopt, 0.0, kAllDirections};
   } else if (found && verdict.doubt.beyond_class) {
-    const auto& joint = verdict.doubt.accused;
-    verdict.charge =
-        Charge{(learner_ ? kSinceFound : "") + describe(verdict.doubt, seen_), joint,
-               joint ? verdict.doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0,
-               seen_.measured.size()};
+    verdict.charge = charge_by(verdict.doubt, seen_);
   } else if (found) {
     verdict.charge = charge_of_lateness(stand);
   }
@@ -184,6 +193,30 @@ std::optional<MachineWitness::Charge> MachineWitness::charge_of_lateness(const M
                   "says",
                   1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
       std::nullopt, 0.0, kAllDirections};
+}
+
+MachineWitness::Charge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplacement& seen) const {
+  const auto& joint = doubt.accused;
+  return {(learner_ ? kSinceFound : "") + describe(doubt, seen), joint,
+          joint ? doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0,
+          seen.measured.size()};
+}
+
+/// Where the machine is charged to be more of the quay may be met than where it is said to be, or at one of
+/// the other places that are tried in turn.
+std::optional<MachineWitness::Charge> MachineWitness::charge_of_elsewhere(const FilteredScan& scan,
+                                                                          const QuaySighting& sighting,
+                                                                          const MachineStand& stand) {
+  const QuaySearch::Met in_place = QuaySearch::met(sighting, seen_);
+  const auto elsewhere =
+      standing_ && standing_->joint
+          ? search_.look_there(*map_, scan, machine_, stand, in_place, *standing_->joint, standing_->amount)
+          : search_.look(*map_, scan, machine_, stand, in_place);
+  if (!elsewhere) {
+    return std::nullopt;
+  }
+  const MachineDoubt doubt = doubt_machine(machine_, stand, *elsewhere);
+  return doubt.beyond_class ? std::optional(charge_by(doubt, *elsewhere)) : std::nullopt;
 }
 
 /// A sight of the quay is of a machine that stands once all of its observations are.
@@ -229,7 +262,7 @@ std::string MachineWitness::seen_through() const {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const Memory& of_class = planes_[i];
     if (of_class.reached >= kFewestReached && of_class.seen_through > kMostSeenThrough * of_class.reached &&
-        extent(of_class.where_W) > kLongestThing) {
+        extent(of_class.where_W) > QuaySearch::kLongestThing) {
       return format_text(
           "the scan sees through %.0f %% of the quay's %s surfaces where joints and mount put them",
           100.0 * of_class.seen_through / of_class.reached, surface_class_name(static_cast<SurfaceClass>(i)));
@@ -242,6 +275,7 @@ void MachineWitness::forget_sight() {
   standing_since_.reset();
   at_rest_.reset();
   sight_.forget();
+  search_.forget();
   if (learner_) {
     learner_->drop_gathered();
   }

@@ -16,6 +16,7 @@
 #include "core/base/time.hpp"
 #include "core/integrity/machine_doubt.hpp"
 #include "core/integrity/machine_finding.hpp"
+#include "core/integrity/quay_search.hpp"
 #include "core/integrity/quay_sight.hpp"
 #include "core/integrity/top_learner.hpp"
 #include "core/tracking/tracker_config.hpp"
@@ -69,6 +70,10 @@ class MachineWitness {
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
   [[nodiscard]] bool acquits(const Verdict& verdict) const;
   [[nodiscard]] std::optional<Charge> charge_of_lateness(const MachineStand& stand) const;
+  [[nodiscard]] Charge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
+  [[nodiscard]] std::optional<Charge> charge_of_elsewhere(const FilteredScan& scan,
+                                                          const QuaySighting& sighting,
+                                                          const MachineStand& stand);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();
@@ -80,6 +85,7 @@ class MachineWitness {
   MachineConfig machine_;
 
   QuaySight sight_;
+  QuaySearch search_;
   Misplacement seen_;
   std::optional<MeasurementTime> last_look_;
   struct Memory {  // of the last frames, fading

@@ -14,7 +14,7 @@ namespace {
 // ones lead to it, and a few returns that something else gave, far away where they turn much, pull little.
 // What they leave unexplained is tried with the wide ones, which reach as far as pairs do.
 constexpr std::array<double, 3> kNarrow = {0.10, 0.05, 0.05};
-constexpr std::array<double, 4> kWide = {0.30, 0.10, 0.05, 0.05};
+constexpr std::array<double, 5> kWide = {0.60, 0.30, 0.10, 0.05, 0.05};
 constexpr double kAgrees = 0.10;     // m: two kernels, five sigma of a return
 constexpr double kExplained = 0.9;   // of the observations, in place 97 to 99 in 100: no need to look further
 constexpr double kMuchBetter = 1.1;  // times the observations explained: else the machine has its word
@@ -74,6 +74,10 @@ std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
 }
 
 }  // namespace
+
+bool Misplacement::agrees(const QuayObservation& o) const {
+  return std::abs(residual(o, centre_W, twist)) <= kAgrees;
+}
 
 Misplacement find_misplacement(std::span<const QuayObservation> observations) {
   Misplacement found;

@@ -35,6 +35,8 @@ struct Misplacement {
     moved.tail<3>() += twist.head<3>().cross(point_W - centre_W);
     return moved;
   }
+  /// Whether this is where the twist puts it, give or take 10 cm.
+  [[nodiscard]] bool agrees(const QuayObservation& o) const;
   [[nodiscard]] bool holds_all() const { return measured.size() == 6; }
 };
 

@@ -25,7 +25,26 @@ bool beneath_or_above(const Box& area_W, const Point& p) {
 
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
                                         std::span<const ScanView> views) {
-  choose_returns_near(map, scan);
+  choose_returns_near(map, scan, Pose::Identity());
+  observe_planes(map);
+  for (const ScanView& view : views) {
+    for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
+      look_through(map, surface, view);
+    }
+  }
+  return gather();
+}
+
+const QuaySighting& QuaySight::look_elsewhere(const QuayMap& map, const FilteredScan& scan,
+                                              const Pose& T_true_said) {
+  forget();
+  choose_returns_near(map, scan, T_true_said);
+  observe_planes(map);
+  return gather();
+}
+
+/// What the chosen returns say of the planes that they are near to.
+void QuaySight::observe_planes(const QuayMap& map) {
   nearest_.resize(returns_W_.size());
   map.tree().nearest(returns_W_, kGate, nearest_);
   for (std::size_t i = 0; i < returns_W_.size(); ++i) {
@@ -37,12 +56,6 @@ const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& 
       observe(plane.surface, returns_W_[i], plane.normal_W.cast<double>(), plane.offset(returns_W_[i]));
     }
   }
-  for (const ScanView& view : views) {
-    for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
-      look_through(map, surface, view);
-    }
-  }
-  return gather();
 }
 
 const QuaySighting& QuaySight::look_for(const QuayPlane& top, const FilteredScan& scan, const Box* area_W) {
@@ -74,7 +87,7 @@ void QuaySight::forget() {
 void QuaySight::observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W,
                         double offset) {
   recent_.at(static_cast<std::size_t>(surface))
-      .push_back({turn_, {return_W.cast<double>() - offset * n_W, n_W, offset}});
+      .push_back({turn_, {return_W.cast<double>() - offset * n_W, n_W, offset, surface, true}});
 }
 
 const QuaySighting& QuaySight::gather() {
@@ -85,6 +98,7 @@ const QuaySighting& QuaySight::gather() {
     }
     for (const Recent& recent : of_class) {
       seen_.observations.push_back(recent.observation);
+      seen_.observations.back().newest = recent.turn == turn_;
     }
   }
   return seen_;
@@ -127,12 +141,14 @@ void QuaySight::choose_returns(const FilteredScan& scan) {
 }
 
 /// Of each class evenly out of those that may be of it; one that may be of several is of the rarest.
-void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan) {
+void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan, const Pose& T_true_said) {
+  const Eigen::Isometry3f moves(T_true_said.cast<float>());
   begin_frame();
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
-  take_evenly(scan, kLookedUp, [&](const Point& p) {
+  take_evenly(scan, sample_.looked_up, [&](const Point& said_W) {
+    const Point p = moves * said_W;
     const SurfaceCells::Classes classes = map.classes_near(p);
     for (const SurfaceClass surface : kRarestFirst) {
       if ((classes >> static_cast<unsigned>(surface) & 1U) != 0) {
@@ -143,8 +159,9 @@ void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan
   });
   for (std::size_t surface = 0; surface < candidates_W_.size(); ++surface) {
     const Cloud& of_class = candidates_W_[surface];
-    const std::size_t stride =
-        std::max<std::size_t>(1, (of_class.size() + kReturnsOf[surface] - 1) / kReturnsOf[surface]);
+    const std::size_t most = sample_.of_class.at(surface);
+    const std::size_t stride = std::max<std::size_t>(1, (of_class.size() + most - 1) / most);
+    seen_.each_stands_for[surface] = static_cast<double>(stride);
     for (std::size_t i = turn_ % stride; i < of_class.size(); i += stride) {
       returns_W_.push_back(of_class[i]);
     }

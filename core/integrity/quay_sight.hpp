@@ -30,6 +30,8 @@ struct QuayObservation {
   Eigen::Vector3d p_W;  // where it is
   Eigen::Vector3d n_W;  // its unit normal
   double offset;        // n . (return - p), m
+  SurfaceClass surface;
+  bool newest;  // of the last frame
 };
 
 /// Planes of the map of one class that rays reached.
@@ -42,6 +44,8 @@ struct QuaySighting {
   std::vector<QuayObservation> observations;        // of the last frames
   std::array<QuayCount, QuayMap::kClasses> planes;  // of this frame
   std::uint32_t asked = 0;  // returns of this frame that lie where the top is looked for, on it or not
+  /// With a map: for how many returns of this frame that may be of the class each that was taken stands.
+  std::array<double, QuayMap::kClasses> each_stands_for = {1.0, 1.0, 1.0, 1.0};
 };
 
 class QuaySight {
@@ -59,12 +63,23 @@ class QuaySight {
   static constexpr float kGate = QuayMap::kGate;
   static constexpr float kFarthest = 60.0F;  // m from the sensor
 
+  /// How many returns of a frame are asked what they may be of, and of each class how many are taken.
+  struct Sample {
+    std::size_t looked_up = kLookedUp;
+    std::array<std::size_t, QuayMap::kClasses> of_class = kReturnsOf;
+  };
+
   /// `has_region`: the scan was cropped to the hull's region, so that what is outside is not hull.
-  explicit QuaySight(bool has_region) : has_region_(has_region) {}
+  explicit QuaySight(bool has_region) : QuaySight(has_region, Sample{}) {}
+  QuaySight(bool has_region, const Sample& sample) : has_region_(has_region), sample_(sample) {}
 
   /// What the scan shows of a map's planes. The answer lives until the next call.
   [[nodiscard]] const QuaySighting& look_for(const QuayMap& map, const FilteredScan& scan,
                                              std::span<const ScanView> views);
+
+  /// The same of this frame alone, were the sensor where `T_true_said` puts what it measured (W to W).
+  [[nodiscard]] const QuaySighting& look_elsewhere(const QuayMap& map, const FilteredScan& scan,
+                                                   const Pose& T_true_said);
 
   /// Of the quay's top, in the level extent of `area_W` if there is one. Precondition: there is a region.
   [[nodiscard]] const QuaySighting& look_for(const QuayPlane& top, const FilteredScan& scan,
@@ -81,12 +96,14 @@ class QuaySight {
   template <typename Take>
   void take_evenly(const FilteredScan& scan, std::size_t most, Take take) const;
   void choose_returns(const FilteredScan& scan);
-  void choose_returns_near(const QuayMap& map, const FilteredScan& scan);
+  void choose_returns_near(const QuayMap& map, const FilteredScan& scan, const Pose& T_true_said);
+  void observe_planes(const QuayMap& map);
   void observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);
   const QuaySighting& gather();
   void look_through(const QuayMap& map, std::size_t surface, const ScanView& view);
 
   bool has_region_;
+  Sample sample_;
   std::uint32_t turn_ = 0;  // which part of the returns and planes is looked at
   Cloud returns_W_;
   std::array<Cloud, QuayMap::kClasses> candidates_W_;

@@ -1,7 +1,8 @@
 // What the quay says of the joints, one line a frame: the CSV of `hulltrack replay --joints`.
 //
 // For each joint how much it reads too much, and up to how much wear within the machine's class could hide
-// there (ICD 3.1), m and deg; both are empty where the scan does not tell. Numbers as in frame_csv.hpp.
+// there (ICD 3.1), m and deg; both are empty where the scan does not tell, or shows small errors but would not
+// find a large one. Numbers as in frame_csv.hpp.
 #pragma once
 
 #include <string>

@@ -64,7 +64,8 @@ inline Cloud quay_cloud(const std::vector<std::size_t>& surfaces = {0, 1, 2}) {
   return cloud;
 }
 
-/// A frame of such a machine, of `count` returns of each surface.
+/// A frame of such a machine, of `count` returns of each surface of the quay and of what stands there
+/// besides.
 struct QuayFrame {
   FilteredScan scan;
   std::vector<ScanView> views{1};
@@ -72,15 +73,20 @@ struct QuayFrame {
 };
 
 inline QuayFrame quay_frame(const Joints& reported, const Pose& E, unsigned seed, int count = 400,
-                            const std::vector<std::size_t>& surfaces = {0, 1, 2}) {
+                            const std::vector<std::size_t>& surfaces = {0, 1, 2},
+                            const std::vector<QuaySurface>& besides = {}) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> along(0.02F, 0.98F);
   std::normal_distribution<float> noise(0.0F, 0.02F);
   QuayFrame frame;
   frame.stand = stand_at(reported);
   Cloud& returns_W = frame.scan.returns_W.emplace_back();
+  std::vector<QuaySurface> shown;
   for (const std::size_t i : surfaces) {
-    const QuaySurface& surface = quay_surfaces().at(i);
+    shown.push_back(quay_surfaces().at(i));
+  }
+  shown.insert(shown.end(), besides.begin(), besides.end());
+  for (const QuaySurface& surface : shown) {
     for (int k = 0; k < count; ++k) {
       const Point p = surface.corner + along(random) * surface.u + along(random) * surface.v +
                       noise(random) * surface.u.cross(surface.v).normalized();

@@ -15,10 +15,13 @@ using testing::quay_cloud;
 using testing::quay_frame;
 using testing::quay_machine;
 using testing::QuayFrame;
+using testing::QuaySurface;
 
 const Joints kWorking{0.0, radians(80.0), radians(-2.0)};
 const Box kHull{{-95.0F, 1.0F, -8.0F}, {95.0F, 33.0F, 20.0F}};
 const Box kRegion{{-95.0F, 0.6F, -10.0F}, {95.0F, 45.0F, 25.0F}};
+
+const std::vector<std::size_t> kAllSurfaces = {0, 1, 2, 3};
 
 std::shared_ptr<const QuayMap> quay_map() {
   static const auto map = std::make_shared<const QuayMap>(quay_cloud());
@@ -39,7 +42,7 @@ class Frames {
       const Joints reported{kWorking.d_x + too_much.d_x, kWorking.theta_r + too_much.theta_r,
                             kWorking.theta_p + too_much.theta_p};
       QuayFrame frame = quay_frame(reported, misplaced(reported, kWorking), static_cast<unsigned>(frame_),
-                                   count_, surfaces);
+                                   count_, surfaces, besides_);
       frame.stand.rate = rate;
       finding =
           witness_.look(MeasurementTime{milliseconds(100) * frame_++}, frame.scan, frame.views, frame.stand);
@@ -47,19 +50,32 @@ class Frames {
     return finding;
   }
   MachineWitness& witness() { return witness_; }
+  /// What is in no map stands on the quay from now on.
+  void show(const QuaySurface& surface) { besides_.push_back(surface); }
 
  private:
+  std::vector<QuaySurface> besides_;
   MachineWitness witness_;
   int count_;
   int frame_ = 0;
 };
 
 TEST(MachineWitness, AQuayInItsPlaceConfirmsAllSixAxes) {
-  Frames frames;
+  Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
   for (int i = 0; i < 30; ++i) {
-    const MachineFinding finding = frames.run(1, {});
+    const MachineFinding finding = frames.run(1, {}, kAllSurfaces);
     EXPECT_EQ(finding.faults, 0) << finding.reason;
     EXPECT_TRUE(i < 2 || finding.confirmed) << i;
+  }
+}
+
+TEST(MachineWitness, AWallThatMightHaveBeenMovedConfirmsNothingAndHidesALargeError) {
+  Frames frames;  // 15 m of it across the rails, no longer than what leaves in one piece
+  for (int i = 0; i < 30; ++i) {
+    const MachineFinding finding = frames.run(1, {});
+    EXPECT_FALSE(finding.confirmed);
+    EXPECT_TRUE(std::isinf(finding.joints[0].hidden));
+    EXPECT_FALSE(i > 2 && std::isinf(finding.joints[2].hidden)) << "the top is long enough for the luff";
   }
 }
 
@@ -80,11 +96,45 @@ TEST(MachineWitness, AJointBeyondItsClassTakesHealthWithinHalfASecond) {
 }
 
 TEST(MachineWitness, AMachineThatIsMetresOffSeesThroughTheQuaysWalls) {
-  const std::vector<std::size_t> all = {0, 1, 2, 3};  // more than one thing that could have left
-  Frames frames(std::make_shared<const QuayMap>(quay_cloud(all)));
-  const MachineFinding finding = frames.run(20, {4.0, 0.0, 0.0}, all);
+  // More than one thing that could have left.
+  Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
+  const MachineFinding finding = frames.run(20, {7.0, 0.0, 0.0}, kAllSurfaces);
   EXPECT_EQ(finding.faults, fault::plc_value);
   EXPECT_NE(finding.reason.find("transverse"), std::string::npos) << finding.reason;
+}
+
+TEST(MachineWitness, AJointThatIsOffByMoreThanAGateIsFoundWhereTheQuayIsMet) {
+  // So far to this side no ray goes through a wall, and none of its returns is near it.
+  const std::vector<std::pair<Joints, const char*>> cases = {{{-1.3, 0.0, 0.0}, "travel read 1.3"},
+                                                             {{-4.8, 0.0, 0.0}, "travel read 4.8"},
+                                                             {{0.0, radians(-2.0), 0.0}, "slew read 1.9"},
+                                                             {{0.0, 0.0, radians(2.5)}, "luff read 2.5"}};
+  for (const auto& [too_much, words] : cases) {
+    Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
+    const MachineFinding finding = frames.run(30, too_much, kAllSurfaces);
+    EXPECT_EQ(finding.faults, fault::plc_value) << words;
+    EXPECT_NE(finding.reason.find(words), std::string::npos) << words << ": " << finding.reason;
+    EXPECT_FALSE(finding.confirmed);
+    EXPECT_EQ(frames.run(20, {}, kAllSurfaces).faults, 0) << words << ": it is right again";
+  }
+}
+
+TEST(MachineWitness, AnErrorThatGrowsBeyondTheGateStaysCharged) {
+  Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
+  for (int i = 0; i < 150; ++i) {
+    const MachineFinding finding = frames.run(1, {-0.02 * i, 0.0, 0.0}, kAllSurfaces);
+    EXPECT_TRUE(i < 20 || finding.faults == fault::plc_value) << "off by " << 0.02 * i << " m";
+  }
+}
+
+TEST(MachineWitness, ALorryBeforeAWallIsNoOtherPlaceOfTheMachine) {
+  Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
+  frames.show({{13.0F, -16.0F, 0.5F}, {0.0F, 2.5F, 0.0F}, {0.0F, 0.0F, 3.5F}});   // its back
+  frames.show({{-7.0F, -18.6F, 0.5F}, {18.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 4.0F}});  // and another one's side
+  for (int i = 0; i < 60; ++i) {
+    const MachineFinding finding = frames.run(1, {}, {0});
+    EXPECT_EQ(finding.faults, 0) << finding.reason;
+  }
 }
 
 TEST(MachineWitness, ALorryThatHasLeftTheQuayIsNoFaultOfTheMachine) {
@@ -103,8 +153,8 @@ TEST(MachineWitness, ALorryThatHasLeftTheQuayIsNoFaultOfTheMachine) {
 }
 
 TEST(MachineWitness, SaysOfEachJointHowMuchItHides) {
-  Frames frames;
-  const MachineFinding finding = frames.run(20, {0.3, 0.0, 0.0});
+  Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
+  const MachineFinding finding = frames.run(20, {0.3, 0.0, 0.0}, kAllSurfaces);
   EXPECT_NEAR(finding.joints[0].reads_too_much, 0.3, 0.05);
   EXPECT_GT(finding.joints[0].hidden, 0.05);
   EXPECT_LT(finding.joints[0].hidden, 0.2);
