@@ -14,7 +14,6 @@ CALM_S = 8.0          # a fault that comes about later begins after so much of t
 MOVES_WITHIN_S = 1.0  # a joint that starts to move goes farther than MOVES within that
 JOINTS = {"travel": "d_x", "slew": "theta_r", "luff": "theta_p"}
 UNITS = {"travel": "m", "slew": "deg", "luff": "deg"}
-SHOWING_MOTION = {"travel": 2.0, "slew": 10.0, "luff": 10.0}  # without a map that much shows a fault
 MOVES = {"travel": 0.1, "slew": 0.3, "luff": 0.1}
 
 
@@ -38,10 +37,9 @@ class Site:
 class Attack:
     name: str
     sentence: str
-    joints: tuple      # whose values are false; empty: it shows at once, a mount where the quay shows all joints
+    joints: tuple      # whose values are false, so that it shows by how far they are off; else empty
     falsify: object    # Site -> ns at which the fault begins
-    without: str       # without a map of the quay: "shown" by the joint's motion, or at once; "speed": when the hull
-                       # then seems faster than max_speed; "never": nothing need tell
+    at_once: bool = False       # it shows from its beginning on, whatever is known of the quay
     quay_map_only: bool = False
     within_class: bool = False  # a machine that is worn as far as it may be: must not be accused
 
@@ -240,47 +238,40 @@ def turned(xyz, deg):
     return (xyz - middle) @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + middle
 
 
-# The largest bias that may pass for a lying of the ship: hull.max_yaw of the slew, hull.max_heel of the luff.
-LARGEST_HONEST = {"travel": np.inf, "slew": 3.5, "luff": 4.0}
-LARGEST_HONEST_SCALE = 2.0  # %
-
-
 def attacks_on(joint):
     unit, own = UNITS[joint], (joint,)
-    yield Attack(f"{joint}-sign", "counts the other way", own, value(joint, lambda v, t: -v), "shown")
+    yield Attack(f"{joint}-sign", "counts the other way", own, value(joint, lambda v, t: -v))
     yield Attack(f"{joint}-mirrored", "counts the other way from where it stood at first", own,
-                 value(joint, lambda v, t: 2 * v[0] - v), "shown")
+                 value(joint, lambda v, t: 2 * v[0] - v))
     for bias in (0.2, 0.5, 1.0, 3.0) if joint == "travel" else (1.0, 2.0, 5.0, 10.0):
         yield Attack(f"{joint}-bias{bias:+g}", f"{bias:g} {unit} too much", own,
-                     value(joint, lambda v, t, bias=bias: v + bias),
-                     "shown" if bias > LARGEST_HONEST[joint] else "never")
+                     value(joint, lambda v, t, bias=bias: v + bias))
     for percent in (1.0, 2.0, 5.0):
-        owed = "shown" if percent > LARGEST_HONEST_SCALE else "never"
         yield Attack(f"{joint}-scale{percent:+g}", f"{percent:g} % too much", own,
-                     value(joint, lambda v, t, k=percent / 100: v * (1 + k)), owed)
+                     value(joint, lambda v, t, k=percent / 100: v * (1 + k)))
         yield Attack(f"{joint}-gain{percent:+g}", f"moves by {percent:g} % too much from where it stood at first", own,
-                     value(joint, lambda v, t, k=percent / 100: v + k * (v - v[0])), owed)
+                     value(joint, lambda v, t, k=percent / 100: v + k * (v - v[0])))
     for seconds in (5, 20, 3600):
         span = f"for {seconds} s" if seconds < 3600 else "for good"
         yield Attack(f"{joint}-frozen" + (f"-{seconds}" if seconds < 3600 else ""),
-                     f"stands still {span} while it moves, heartbeat alive", own, frozen(joint, seconds), "speed")
-    yield Attack(f"{joint}-late-200", "200 ms late", own, late(own, 0.2), "never")
-    yield Attack(f"{joint}-drift", f"drifts by 0.3 {unit} within the run", own, drifting(joint, 0.3), "never")
+                     f"stands still {span} while it moves, heartbeat alive", own, frozen(joint, seconds))
+    yield Attack(f"{joint}-late-200", "200 ms late", own, late(own, 0.2))
+    yield Attack(f"{joint}-drift", f"drifts by 0.3 {unit} within the run", own, drifting(joint, 0.3))
     wave, length = (0.05, 3.0) if joint == "travel" else (0.2, 10.0)
     yield Attack(f"{joint}-ripple", f"{wave:g} {unit} to and fro every {length:g} {unit}", own,
-                 value(joint, lambda v, t: v + wave * np.sin(2 * np.pi * v / length)), "never")
+                 value(joint, lambda v, t: v + wave * np.sin(2 * np.pi * v / length)))
     back = 3.0 if joint == "travel" else 5.0
     yield Attack(f"{joint}-gap", f"no value for 2 s, then {back:g} {unit} too much", (),
-                 back_elsewhere(joint, back), "shown")
+                 back_elsewhere(joint, back), at_once=True)
 
 
 def attacks_on_all_joints():
     every = tuple(JOINTS)
     for ms in (50, 100, 500):
         yield Attack(f"all-late-{ms}", f"all joints {ms} ms later than plc.latency_ms says", every,
-                     late(every, ms / 1e3), "never")
-    yield Attack("words-swapped", "the wrong plc.read.word_order", (), swapped_words, "shown")
-    yield Attack("words-torn", "one read in twenty has the low words of the one before", (), torn_reads, "shown")
+                     late(every, ms / 1e3))
+    yield Attack("words-swapped", "the wrong plc.read.word_order", (), swapped_words, True)
+    yield Attack("words-torn", "one read in twenty has the low words of the one before", (), torn_reads, True)
 
 
 def attacks_on_mounts():
@@ -288,35 +279,35 @@ def attacks_on_mounts():
         return mount(lambda xyz, rpy: (xyz, rpy + deg * np.eye(3)[axis]))
 
     yield Attack("mount-mirrored", "the LiDAR hangs on the boom's other side", (),
-                 mount(lambda xyz, rpy: (xyz * [1, -1, 1], rpy * [-1, 1, -1])), "shown")
-    yield Attack("mount-yaw90", "turned by 90 deg", (), turn(2, 90.0), "shown")
+                 mount(lambda xyz, rpy: (xyz * [1, -1, 1], rpy * [-1, 1, -1])), at_once=True)
+    yield Attack("mount-yaw90", "turned by 90 deg", (), turn(2, 90.0), at_once=True)
     for axis, name in enumerate(("roll", "pitch", "yaw")):
-        yield Attack(f"mount-{name}2", f"{name} 2 deg off", (), turn(axis, 2.0), "never")
+        yield Attack(f"mount-{name}2", f"{name} 2 deg off", (), turn(axis, 2.0))
     for axis, name in enumerate("xyz"):
         yield Attack(f"mount-{name}0.3", f"{name} 0.3 m off", (),
-                     mount(lambda xyz, rpy, axis=axis: (xyz + 0.3 * np.eye(3)[axis], rpy)), "never")
+                     mount(lambda xyz, rpy, axis=axis: (xyz + 0.3 * np.eye(3)[axis], rpy)))
 
 
 def attacks_on_maps():
     for file, short in (("hull.pcd", "hull-map"), ("quay.pcd", "quay-map")):
         quay = file == "quay.pcd"
-        yield Attack(f"{short}-centimetres", "in centimetres", (), points(file, lambda xyz: 100 * xyz), "shown", quay)
-        yield Attack(f"{short}-viewpoint", "a VIEWPOINT that is not zero", (), viewpoint(file), "shown", quay)
-        yield Attack(f"{short}-turned", "the other way round", (), points(file, lambda xyz: turned(xyz, 180)), "shown",
+        yield Attack(f"{short}-centimetres", "in centimetres", (), points(file, lambda xyz: 100 * xyz), True, quay)
+        yield Attack(f"{short}-viewpoint", "a VIEWPOINT that is not zero", (), viewpoint(file), True, quay)
+        yield Attack(f"{short}-turned", "the other way round", (), points(file, lambda xyz: turned(xyz, 180)), True,
                      quay)
     # Where the hull lies is told in her map's own coordinates: nothing can tell that these were moved.
     yield Attack("quay-map-moved", "0.4 m along the quay", (), points("quay.pcd", lambda xyz: xyz + [0.4, 0, 0]),
-                 "shown", True)
-    yield Attack("quay-map-askew", "turned by 2 deg", (), points("quay.pcd", lambda xyz: turned(xyz, 2)), "shown", True)
-    yield Attack("quay-map-other", "the hull's map in its place", (), instead("quay.pcd", "hull.pcd"), "shown", True)
+                 True, True)
+    yield Attack("quay-map-askew", "turned by 2 deg", (), points("quay.pcd", lambda xyz: turned(xyz, 2)), True, True)
+    yield Attack("quay-map-other", "the hull's map in its place", (), instead("quay.pcd", "hull.pcd"), True, True)
 
 
 def all_attacks():
     """Nothing falsified first."""
-    yield Attack("honest", "nothing is falsified", (), lambda site: site.plc["t_ns"][0], "shown",
+    yield Attack("honest", "nothing is falsified", (), lambda site: site.plc["t_ns"][0], at_once=True,
                  within_class=True)
     for number in range(1, 7):
-        yield Attack(f"worn-{number}", "worn as far as its class allows", (), worn(number), "never", within_class=True)
+        yield Attack(f"worn-{number}", "worn as far as its class allows", (), worn(number), within_class=True)
     for joint in JOINTS:
         yield from attacks_on(joint)
     yield from attacks_on_all_joints()

@@ -138,16 +138,13 @@ class Maps(unittest.TestCase):
 
 
 class Contracts(unittest.TestCase):
-    def test_what_has_to_show_without_a_map_of_the_quay(self):
-        shown = {name for name, attack in ATTACKS.items() if attack.without == "shown" and not attack.quay_map_only}
-        for name in ("travel-sign", "slew-mirrored", "slew-bias+5", "luff-bias+5", "travel-scale+5", "slew-gain+5",
-                     "words-swapped", "mount-mirrored", "travel-gap"):
-            self.assertIn(name, shown)
-        for name in ("travel-bias+3", "slew-bias+2", "luff-bias+2", "slew-scale+2", "all-late-500", "slew-drift",
-                     "mount-yaw2"):
-            self.assertEqual(ATTACKS[name].without, "never")
-        for joint in faults.JOINTS:
-            self.assertEqual(ATTACKS[f"{joint}-frozen-20"].without, "speed")
+    def test_what_shows_at_once(self):
+        at_once = {name for name, attack in ATTACKS.items() if attack.at_once and not attack.quay_map_only}
+        self.assertEqual(at_once, {"honest", "travel-gap", "slew-gap", "luff-gap", "words-swapped", "words-torn",
+                                   "mount-mirrored", "mount-yaw90", "hull-map-centimetres", "hull-map-viewpoint",
+                                   "hull-map-turned"})
+        for name, attack in ATTACKS.items():
+            self.assertFalse(attack.at_once and attack.joints, name)
 
     def test_names_are_unique(self):
         names = [attack.name for attack in faults.all_attacks()]
