@@ -1,6 +1,6 @@
 """Machines and maps that are not what the configuration says: each attack falsifies plc.csv, hulltrackd.toml or a map.
 
-A fault has a beginning, and joints whose motion shows it. Columns of plc.csv as judge.read_table() gives them, m and
+A fault has a beginning. Columns of plc.csv as judge.read_table() gives them, m and
 deg.
 """
 import dataclasses

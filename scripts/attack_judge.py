@@ -24,7 +24,8 @@ class Verdict:
     grave: int           # healthy, and off by more than may stay unseen
     late: int            # of these when the fault has shown for 3 s
     owed: int            # frames in which it had shown for 3 s, healthy or not
-    beyond: int          # frames in which a joint had been off by more than the table's amount for 3 s, in view or not
+    beyond: int          # frames in which a joint had been off by more than the table's amount for 3 s
+    in_view: int         # of these, how many a map of the quay showed
     worst_m: float       # of healthy frames
     worst_deg: float
     shows_s: float       # from the beginning to when it first shows for 3 s; inf = nothing need ever tell
@@ -36,7 +37,7 @@ class Verdict:
     refused: bool = False
 
 
-REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, owed=0, beyond=0, worst_m=0.0, worst_deg=0.0,
+REFUSED = Verdict(frames=0, healthy=0, wrong=0, grave=0, late=0, owed=0, beyond=0, in_view=0, worst_m=0.0, worst_deg=0.0,
                   shows_s=math.inf, fell_s=0.0, until_s=None, charged=0, bit=False, named=None, refused=True)
 
 
@@ -60,8 +61,8 @@ def fall(frames, after, seconds):
     return seconds(frames["t_ns"][zeros[0]]) if len(zeros) else math.inf
 
 
-def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN, beyond=0):
-    """`begin`: ns; `owed_`: of each frame, as owed() says; `beyond`: a number of frames. Tables of
+def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN, beyond=0, in_view=0):
+    """`begin`: ns; `owed_`: of each frame, as owed() says; `beyond`, `in_view`: numbers of frames. Tables of
     judge.read_table()."""
     twists = judge.error_twists(frames, truth)
     error = np.linalg.norm(twists[:, 3:], axis=1)
@@ -81,7 +82,7 @@ def judge_attack(frames, truth, begin, owed_, joints=(), unseen=UNSEEN, beyond=0
         return float(t_ns - begin) * 1e-9
 
     return Verdict(frames=int(after.sum()), healthy=int(healthy.sum()), wrong=int(wrong.sum()), grave=int(grave.sum()),
-                   late=int(late.sum()), owed=int(np.count_nonzero(owed_)), beyond=int(beyond),
+                   late=int(late.sum()), owed=int(np.count_nonzero(owed_)), beyond=int(beyond), in_view=int(in_view),
                    worst_m=largest(error), worst_deg=largest(turn),
                    shows_s=since_begin(frames["t_ns"][owed_][0]) - shows.NOTICE_S if owed_.any() else math.inf,
                    fell_s=fall(frames, after, since_begin),

@@ -14,6 +14,8 @@ NOTICE_S = 3.0             # from what shows a fault to health 0
 # for each metre of travel.
 HIDDEN = {"travel": (0.13, 0.05 / 30), "slew": (0.4, 0.0), "luff": (0.8, 0.0)}  # m, deg
 IN_VIEW = 1.5  # the quay is in view where it hides no more than so many times that
+# More than that may put the quay farther off than its planes are looked for, 0.6 m: of the angles at 60 and 40 m.
+SMALL = {"travel": 0.5, "slew": 0.5, "luff": 0.9}  # m, deg
 
 
 def at_times(plc, column, t_ns):
@@ -50,16 +52,28 @@ class View:
     """What the quay shows of an honest machine: from `hulltrack replay --joints`."""
     t_ns: np.ndarray
     hidden: dict  # by joint: m, deg; infinite where the scan does not tell
+    far: dict     # by joint: whether a large error would be found
+
+    def at(self, t_ns):
+        """Which of its frames those of t_ns are, which are the honest machine's or fewer."""
+        return np.minimum(np.searchsorted(self.t_ns, t_ns), len(self.t_ns) - 1)
 
     def hides(self, joint, t_ns):
-        """In the frames of t_ns, which are the honest machine's or fewer."""
-        return self.hidden[joint][np.minimum(np.searchsorted(self.t_ns, t_ns), len(self.t_ns) - 1)]
+        return self.hidden[joint][self.at(t_ns)]
+
+    def finds_large(self, joint, t_ns):
+        return self.far[joint][self.at(t_ns)]
 
 
 def view(table):
     """Of a table of judge.read_table()."""
-    return View(table["t_ns"], {joint: np.where(np.isnan(table[f"{joint}_hidden"]), np.inf, table[f"{joint}_hidden"])
-                                for joint in faults.JOINTS})
+    def mostly(flags):
+        """In nine in ten of the frames of a second."""
+        return np.convolve(flags, np.ones(11), "same") >= 0.9 * np.convolve(np.ones(len(flags)), np.ones(11), "same")
+
+    return View(table["t_ns"],
+                {joint: np.where(np.isnan(table[f"{joint}_hidden"]), np.inf, table[f"{joint}_hidden"])
+                 for joint in faults.JOINTS}, {joint: mostly(table[f"{joint}_far"]) for joint in faults.JOINTS})
 
 
 def by_the_table(joint, plc, t_ns):
@@ -67,8 +81,10 @@ def by_the_table(joint, plc, t_ns):
     return amount + for_each_metre * np.abs(at_times(plc, "d_x", t_ns))
 
 
-def in_view(seen, joint, plc, t_ns):
-    return seen.hides(joint, t_ns) <= IN_VIEW * by_the_table(joint, plc, t_ns)
+def in_view(seen, joint, plc, t_ns, off=np.inf):
+    """At which of the times t_ns an error of the joint of `off` is."""
+    return (seen.hides(joint, t_ns) <= IN_VIEW * by_the_table(joint, plc, t_ns)) & (
+        seen.finds_large(joint, t_ns) | (off <= SMALL[joint]))
 
 
 def off_by(plc, falsified, joint, t_ns):
@@ -81,7 +97,8 @@ def owed_by_amount(plc, falsified, begin, seen, t_ns):
     shows it, and has not been seen right since."""
     result = np.zeros(len(t_ns), dtype=bool)
     for joint in faults.JOINTS:
-        off, in_view_ = off_by(plc, falsified, joint, t_ns), in_view(seen, joint, plc, t_ns)
+        off = off_by(plc, falsified, joint, t_ns)
+        in_view_ = in_view(seen, joint, plc, t_ns, off)
         hidden = np.maximum(seen.hides(joint, t_ns), by_the_table(joint, plc, t_ns))
         shown_ = (off > hidden) & in_view_ & (t_ns >= begin)
         result |= until(lasting(bridged(shown_, t_ns), t_ns, NOTICE_S), in_view_ & (off <= hidden))
@@ -152,14 +169,17 @@ def apparent_speed(plc, falsified, joint, machine, point):
     return rate if joint == "travel" else np.radians(rate) * lever(plc, joint, machine, point)
 
 
-def shown_by_speed(plc, falsified, begin, machine, point):
-    """ns at which the hull has seemed to run too fast for far enough; None = not in this run."""
+def shown_by_speed(plc, falsified, truth, begin, machine, point):
+    """ns at which the hull has seemed to run too fast for far enough, whatever way she runs herself; None = not in this
+    run."""
     moments = []
+    own = np.linalg.norm([np.gradient(at_times(truth, name, plc["t_ns"]), (plc["t_ns"] - plc["t_ns"][0]) * 1e-9)
+                          for name in "xyz"], axis=0)
     dt = np.diff(plc["t_ns"], append=plc["t_ns"][-1]) * 1e-9
     for joint in faults.JOINTS:
         speed = apparent_speed(plc, falsified, joint, machine, point)
-        too_fast = (speed > MAX_SPEED) & (plc["t_ns"] >= begin)
-        way = np.cumsum(np.where(too_fast, speed * dt, 0.0))
+        too_fast = (speed - own > MAX_SPEED) & (plc["t_ns"] >= begin)
+        way = np.cumsum(np.where(too_fast, (speed - own) * dt, 0.0))
         way -= np.maximum.accumulate(np.where(too_fast, 0.0, way))
         far = np.flatnonzero(way > RUN_M)
         if len(far):
@@ -244,6 +264,10 @@ def shown_by_moves(plc, falsified, truth, begin, machine, point, t_ns, seen_whol
     return None
 
 
+def every_joint_in_view(seen, plc, t_ns):
+    return np.all([in_view(seen, joint, plc, t_ns) for joint in faults.JOINTS], axis=0)
+
+
 def owed(attack, plc, falsified, truth, begin, seen, machine, point, frames):
     """In which of the frames the fault has shown for long enough: health 0, or the pose right. `plc` is the true one,
     `seen` the View of the quay's map or None without one."""
@@ -259,9 +283,11 @@ def owed(attack, plc, falsified, truth, begin, seen, machine, point, frames):
     if not attack.joints:
         if not seen:
             return since(None)
-        every = np.all([in_view(seen, joint, plc, t_ns) for joint in faults.JOINTS], axis=0)
-        return lasting(bridged(every & (t_ns >= begin), t_ns), t_ns, NOTICE_S)
+        every = every_joint_in_view(seen, plc, t_ns) & (t_ns >= begin)
+        return lasting(bridged(every, t_ns), t_ns, NOTICE_S)
     result = owed_by_bounds(plc, falsified, truth, t_ns) & (t_ns >= begin)
-    result |= since(shown_by_speed(plc, falsified, begin, machine, point))
-    result |= since(shown_by_moves(plc, falsified, truth, begin, machine, point, t_ns, frames["health"] == 1))
+    result |= since(shown_by_speed(plc, falsified, truth, begin, machine, point))
+    # While a map confirms all joints moves are not asked.
+    asked = (frames["health"] == 1) & ~(every_joint_in_view(seen, plc, t_ns) if seen else False)
+    result |= since(shown_by_moves(plc, falsified, truth, begin, machine, point, t_ns, asked))
     return result | owed_by_amount(plc, falsified, begin, seen, t_ns) if seen else result

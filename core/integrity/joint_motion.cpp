@@ -9,8 +9,6 @@
 namespace hulltrack {
 namespace {
 
-// Slower than this a joint stands: an encoder's step between two frames.
-const Eigen::Vector3d kStands(0.03, radians(0.08), radians(0.08));  // m/s, rad/s
 // A move that is shorter says little of a joint.
 const Eigen::Vector3d kShortest(0.5, radians(2.0), radians(1.0));
 // A pose settles this long after the machine.
@@ -46,7 +44,7 @@ void JointMotionWitness::add(MeasurementTime time, const MachineStand& stand,
   }
   const Eigen::Vector3d step = values(now.joints) - values(last_->joints);
   const double dt = to_seconds(time - last_->time);
-  const bool moving = (step.cwiseAbs().array() > dt * kStands.array()).any();
+  const bool moving = (step.cwiseAbs().array() > dt * kStandsBelow.array()).any();
   if (moving && !move_) {
     move_ = Move{.begin = *last_, .last_moving = time};
   }

@@ -57,7 +57,7 @@ struct Weighing {
 /// Where wear hides more than this the joint hardly moves what is seen, and explains it by metres: a quay's
 /// top that slopes a little tells of travel only so. The strain tells then.
 double most_hidden(JointName joint) { return joint == JointName::travel ? 2.0 : radians(5.0); }  // m, rad
-constexpr double kMostHiddenOfMount = 1.0;  // m, and tenths of a radian
+constexpr std::array<double, 6> kMostHiddenOfMount = {1.0, 1.0, 1.0, 0.1, 0.1, 0.1};             // m, rad
 
 }  // namespace
 
@@ -88,10 +88,11 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
       doubt.accused = joint;
     }
   }
-  for (const Twist& h : mount_twists(stand, seen.centre_W)) {
-    const JointDoubt mount = weighing.doubt_along(along(seen, {h}));
-    doubt.mount =
-        doubt.mount || (mount.hidden <= kMostHiddenOfMount && std::abs(mount.reads_too_much) > mount.hidden);
+  const std::array<Twist, 6> of_mount = mount_twists(stand, seen.centre_W);
+  for (std::size_t i = 0; i < of_mount.size(); ++i) {
+    const JointDoubt mount = weighing.doubt_along(along(seen, {of_mount[i]}));
+    doubt.mount = doubt.mount ||
+                  (mount.hidden <= kMostHiddenOfMount[i] && std::abs(mount.reads_too_much) > mount.hidden);
   }
   doubt.strain = weighing.y.dot(weighing.S_inverse * weighing.y);
   // Wear that is spread evenly between its limits has a mean square of a third, along every direction that S

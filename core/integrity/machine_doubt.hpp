@@ -28,6 +28,8 @@ struct JointDoubt {
   /// Up to here it may be wear, m, rad; infinite where nothing is measured.
   double hidden = std::numeric_limits<double>::infinity();
   double gain = 0.0;  // how much better than wear it explains what is seen, in units of S
+  /// Whether an error that is too large to be seen as such would be found (quay_search.hpp).
+  bool finds_large = false;
 };
 
 struct MachineDoubt {

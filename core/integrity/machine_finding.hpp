@@ -9,12 +9,10 @@
 namespace hulltrack {
 
 struct MachineFinding {
-  Faults faults = 0;       // plc_value while the machine is contradicted
-  std::string reason;      // with figures; empty without a fault
-  bool confirmed = false;  // a quay map confirms all six axes in this very frame
-  /// By JointName: what the quay says of them in this frame. `hidden` is infinite also where a small error
-  /// would be seen and a large one would not be found.
-  std::array<JointDoubt, 3> joints;
+  Faults faults = 0;                 // plc_value while the machine is contradicted
+  std::string reason;                // with figures; empty without a fault
+  bool confirmed = false;            // a quay map confirms all six axes in this very frame
+  std::array<JointDoubt, 3> joints;  // by JointName: what the quay says of them in this frame
 };
 
 }  // namespace hulltrack

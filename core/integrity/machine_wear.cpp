@@ -73,7 +73,7 @@ std::array<Twist, 6> mount_twists(const MachineStand& stand, const Eigen::Vector
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
     twists[static_cast<std::size_t>(i)] = shift(axis);
-    twists[static_cast<std::size_t>(i) + 3] = 0.1 * about(axis, stand.sensor_W, centre_W);
+    twists[static_cast<std::size_t>(i) + 3] = about(axis, stand.sensor_W, centre_W);
   }
   return twists;
 }
@@ -98,10 +98,9 @@ std::vector<Twist> wear_twists(const MachineConfig& machine, const MachineStand&
   twists.push_back(kTravelSlip * stand.joints.d_x * travel);
   twists.push_back(kAngleDrift * joint_twist(machine, stand, JointName::slew, centre_W));
   twists.push_back(kAngleDrift * joint_twist(machine, stand, JointName::luff, centre_W));
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
-    twists.push_back(kMountTurn * about(axis, stand.sensor_W, centre_W));
-    twists.push_back(kMountShift * shift(axis));
+  const std::array<Twist, 6> mount = mount_twists(stand, centre_W);
+  for (std::size_t i = 0; i < mount.size(); ++i) {
+    twists.push_back((i < 3 ? kMountShift : kMountTurn) * mount[i]);
   }
   return twists;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/base/text.hpp"
@@ -12,9 +11,6 @@ namespace {
 
 constexpr int kChargesNeeded = 3;
 
-// Slower than this a joint stands, m/s and rad/s: 100 ms of lateness are 3 mm or 0.006 deg.
-constexpr double kStands = 0.03;
-const double kStandsAngle = radians(0.06);
 // As long as observations are kept at 10 Hz, and half as long again for a boom that swings out.
 constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
 
@@ -24,7 +20,6 @@ constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
 constexpr double kLeastShare = 0.5;
 constexpr std::uint32_t kFewestObservations = 60;
 constexpr std::uint32_t kFewestAsked = kFewestObservations / QuaySight::kFrames;  // a frame
-constexpr std::size_t kAllDirections = 6;
 // With eight in ten of the returns near planes on them, lorries and people among them, the quay is surely
 // found.
 constexpr double kSureShare = 0.8;
@@ -62,7 +57,7 @@ float extent(const std::deque<Point>& points) {
 MachineWitness::MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map,
                                const MachineConfig& machine, const std::optional<Box>& region_W,
                                const Box& hull_W)
-    : map_(std::move(map)), machine_(machine), sight_(region_W.has_value()), search_(region_W.has_value()) {
+    : map_(std::move(map)), machine_(machine), sight_(region_W.has_value()) {
   if (map_ == nullptr && region_W && quay.top_is_witness) {
     top_ = known_top(quay);
     if (!top_) {
@@ -88,32 +83,29 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   remember(*sighting);
   seen_ = find_misplacement(sighting->observations);
   Verdict verdict = judge(stand);
+  bool confirmed = false;
+  const MachineCharge* asked = charges_.next_joint();
   if (map_ != nullptr) {
-    if (auto charge = charge_of_elsewhere(scan, *sighting, stand)) {
+    const std::array<bool, 3> finds_large = QuaySearch::would_find(*sighting, seen_, machine_, stand);
+    confirmed = verdict.known && !verdict.charge && seen_.holds_all() &&
+                std::all_of(finds_large.begin(), finds_large.end(), [](bool finds) { return finds; });
+    if (auto charge = charge_of_elsewhere(*sighting, stand, confirmed, asked, verdict.doubt)) {
       verdict.charge = std::move(charge);
       verdict.known = true;
+      confirmed = false;
+    }
+    for (std::size_t joint = 0; joint < finds_large.size(); ++joint) {
+      verdict.doubt.joints.at(joint).finds_large = finds_large.at(joint);
     }
   }
   note_rest(time, stand, verdict);
-  const bool acquitted = !standing_ || acquits(verdict);
   charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : verdict.known ? 0 : charges_in_a_row_;
   if (verdict.charge && charges_in_a_row_ >= kChargesNeeded) {
-    standing_ = std::move(verdict.charge);
-  } else if (acquitted) {
-    standing_.reset();
+    charges_.add(*verdict.charge);
+  } else if (!verdict.charge && verdict.known) {
+    acquit(verdict, asked);
   }
-  MachineFinding finding{
-      standing_ ? fault::plc_value : Faults{0}, standing_ ? standing_->reason : std::string{},
-      verdict.known && !verdict.charge && map_ != nullptr && seen_.holds_all(), verdict.doubt.joints};
-  if (map_ != nullptr) {
-    for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
-      if (!QuaySearch::would_find(joint, *sighting, seen_, machine_, stand)) {
-        finding.joints.at(static_cast<std::size_t>(joint)).hidden = std::numeric_limits<double>::infinity();
-        finding.confirmed = false;
-      }
-    }
-  }
-  return finding;
+  return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
 }
 
 /// Null while there is no top to look for yet.
@@ -129,7 +121,7 @@ const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::s
     const QuaySighting& sighting = sight_.look_for(top->seen.plane, scan, &top->seen.area_W);
     // What it is charged with was seen against this top: it is kept until it is acquitted. So is one of which
     // the place is in view, and it is not there.
-    learner_->seen(standing_ || sighting.asked >= kFewestAsked);
+    learner_->seen(charges_.any() || sighting.asked >= kFewestAsked);
     return &sighting;
   }
   if (on_trial) {
@@ -170,7 +162,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   std::string through = surely_in_place ? std::string{} : seen_through();
   verdict.known = found || !through.empty();
   if (!through.empty()) {
-    verdict.charge = Charge{std::move(through), std::nullopt, 0.0, kAllDirections};
+    verdict.charge = MachineCharge{std::move(through), std::nullopt, 0.0, Misplacement::kDirections};
   } else if (found && verdict.doubt.beyond_class) {
     verdict.charge = charge_by(verdict.doubt, seen_);
   } else if (found) {
@@ -180,7 +172,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
 }
 
 /// Joint values that come late put the machine where it was, but only while it moves.
-std::optional<MachineWitness::Charge> MachineWitness::charge_of_lateness(const MachineStand& stand) const {
+std::optional<MachineCharge> MachineWitness::charge_of_lateness(const MachineStand& stand) const {
   if (!at_rest_ || !seen_.holds_all()) {
     return std::nullopt;
   }
@@ -188,42 +180,59 @@ std::optional<MachineWitness::Charge> MachineWitness::charge_of_lateness(const M
   if (!(std::abs(late.reads_too_much) > late.hidden)) {
     return std::nullopt;
   }
-  return Charge{
+  return MachineCharge{
       format_text("the quay moves with the machine as if joint values were %.0f ms %s than plc.latency_ms "
                   "says",
                   1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
-      std::nullopt, 0.0, kAllDirections};
+      std::nullopt, 0.0, Misplacement::kDirections};
 }
 
-MachineWitness::Charge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplacement& seen) const {
+MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplacement& seen) const {
   const auto& joint = doubt.accused;
   return {(learner_ ? kSinceFound : "") + describe(doubt, seen), joint,
           joint ? doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0,
           seen.measured.size()};
 }
 
-/// Where the machine is charged to be more of the quay may be met than where it is said to be, or at one of
-/// the other places that are tried in turn.
-std::optional<MachineWitness::Charge> MachineWitness::charge_of_elsewhere(const FilteredScan& scan,
-                                                                          const QuaySighting& sighting,
-                                                                          const MachineStand& stand) {
-  const QuaySearch::Met in_place = QuaySearch::met(sighting, seen_);
-  const auto elsewhere =
-      standing_ && standing_->joint
-          ? search_.look_there(*map_, scan, machine_, stand, in_place, *standing_->joint, standing_->amount)
-          : search_.look(*map_, scan, machine_, stand, in_place);
-  if (!elsewhere) {
-    return std::nullopt;
+/// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
+/// where it is said to be, or better at one of the other places that are tried in turn. `doubt` becomes that
+/// of there. Where all axes are confirmed no other place is tried.
+std::optional<MachineCharge> MachineWitness::charge_of_elsewhere(const QuaySighting& sighting,
+                                                                 const MachineStand& stand, bool confirmed,
+                                                                 const MachineCharge* asked,
+                                                                 MachineDoubt& doubt) {
+  const QuaySearch::MetOfEach in_place = QuaySearch::met(sighting, seen_);
+  if (asked != nullptr) {
+    if (const auto there = search_.look_there(*map_, sight_.looked_up_W(), machine_, stand, in_place,
+                                              *asked->joint, asked->amount)) {
+      const MachineDoubt doubt_there = doubt_machine(machine_, stand, *there);
+      if (doubt_there.beyond_class) {
+        doubt = doubt_there;
+        return charge_by(doubt, *there);
+      }
+      if (doubt_there.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
+        return *asked;  // too little is in view to tell
+      }
+    }
   }
-  const MachineDoubt doubt = doubt_machine(machine_, stand, *elsewhere);
-  return doubt.beyond_class ? std::optional(charge_by(doubt, *elsewhere)) : std::nullopt;
+  if (confirmed) {
+    return std::nullopt;  // as much as that is met by chance nowhere else
+  }
+  if (const auto elsewhere = search_.look(*map_, sight_.looked_up_W(), machine_, stand, in_place)) {
+    const MachineDoubt doubt_there = doubt_machine(machine_, stand, *elsewhere);
+    if (doubt_there.beyond_class) {
+      search_.stay();
+      doubt = doubt_there;
+      return charge_by(doubt, *elsewhere);
+    }
+  }
+  return std::nullopt;
 }
 
 /// A sight of the quay is of a machine that stands once all of its observations are.
 void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict) {
-  const Joints& rate = stand.rate;
-  if (std::abs(rate.d_x) > kStands || std::abs(rate.theta_r) > kStandsAngle ||
-      std::abs(rate.theta_p) > kStandsAngle) {
+  const Eigen::Vector3d rate(stand.rate.d_x, stand.rate.theta_r, stand.rate.theta_p);
+  if ((rate.cwiseAbs().array() > kStandsBelow.array()).any()) {
     standing_since_.reset();
     return;
   }
@@ -233,16 +242,16 @@ void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, 
   }
 }
 
-/// Would this frame have shown what the machine is charged with, and does not?
-bool MachineWitness::acquits(const Verdict& verdict) const {
-  if (!verdict.known || verdict.charge) {
-    return false;
+/// Of what this frame would have shown, and does not. `asked`: the joint's charge that was held against it.
+void MachineWitness::acquit(const Verdict& verdict, const MachineCharge* asked) {
+  if (asked != nullptr &&
+      verdict.doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden < std::abs(asked->amount)) {
+    charges_.drop(asked->joint);
   }
-  if (!standing_->joint) {
-    return seen_.measured.size() >= standing_->directions;
+  const MachineCharge* nameless = charges_.without_joint();
+  if (nameless != nullptr && seen_.measured.size() >= nameless->directions) {
+    charges_.drop(std::nullopt);
   }
-  return verdict.doubt.joints.at(static_cast<std::size_t>(*standing_->joint)).hidden <
-         std::abs(standing_->amount);
 }
 
 void MachineWitness::remember(const QuaySighting& sighting) {
@@ -285,7 +294,7 @@ void MachineWitness::forget_sight() {
 
 void MachineWitness::forget() {
   forget_sight();
-  standing_.reset();
+  charges_.drop_all();
   if (learner_) {
     learner_->forget();
   }

@@ -2,7 +2,7 @@
 //
 // A machine beyond its class takes health until a sight of the quay that would have shown it again does not,
 // or a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not; a frame that
-// sees none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.25
+// sees none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.35
 // ms a frame, whatever the map's size.
 #pragma once
 
@@ -14,6 +14,7 @@
 
 #include "core/base/status.hpp"
 #include "core/base/time.hpp"
+#include "core/integrity/machine_charges.hpp"
 #include "core/integrity/machine_doubt.hpp"
 #include "core/integrity/machine_finding.hpp"
 #include "core/integrity/quay_search.hpp"
@@ -51,29 +52,23 @@ class MachineWitness {
   [[nodiscard]] const Misplacement& seen() const { return seen_; }
 
  private:
-  /// Why the machine is beyond its class, as one frame has it.
-  struct Charge {
-    std::string reason;
-    std::optional<JointName> joint;  // if it is one joint's
-    double amount = 0.0;             // that it reads too much, m, rad
-    std::size_t directions = 0;      // in how many the quay was seen
-  };
   /// What one frame comes to: nothing known, or in place (no charge), or elsewhere.
   struct Verdict {
     bool known = false;
-    std::optional<Charge> charge;
+    std::optional<MachineCharge> charge;
     MachineDoubt doubt;
   };
   [[nodiscard]] const QuaySighting* sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
                                                 const MachineStand& stand, bool on_trial);
   [[nodiscard]] std::vector<Twist> doubt_of_reference() const;
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
-  [[nodiscard]] bool acquits(const Verdict& verdict) const;
-  [[nodiscard]] std::optional<Charge> charge_of_lateness(const MachineStand& stand) const;
-  [[nodiscard]] Charge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
-  [[nodiscard]] std::optional<Charge> charge_of_elsewhere(const FilteredScan& scan,
-                                                          const QuaySighting& sighting,
-                                                          const MachineStand& stand);
+  void acquit(const Verdict& verdict, const MachineCharge* asked);
+  [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
+  [[nodiscard]] MachineCharge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
+  [[nodiscard]] std::optional<MachineCharge> charge_of_elsewhere(const QuaySighting& sighting,
+                                                                 const MachineStand& stand, bool confirmed,
+                                                                 const MachineCharge* asked,
+                                                                 MachineDoubt& doubt);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();
@@ -98,7 +93,7 @@ class MachineWitness {
   std::optional<MeasurementTime> standing_since_;
   std::optional<Misplacement> at_rest_;
   int charges_in_a_row_ = 0;
-  std::optional<Charge> standing_;
+  MachineCharges charges_;
 };
 
 }  // namespace hulltrack

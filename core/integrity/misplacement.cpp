@@ -15,17 +15,10 @@ namespace {
 // What they leave unexplained is tried with the wide ones, which reach as far as pairs do.
 constexpr std::array<double, 3> kNarrow = {0.10, 0.05, 0.05};
 constexpr std::array<double, 5> kWide = {0.60, 0.30, 0.10, 0.05, 0.05};
+constexpr double kSettled = 5e-4;    // m: a step that was smaller is not taken again with the same kernel
 constexpr double kAgrees = 0.10;     // m: two kernels, five sigma of a return
 constexpr double kExplained = 0.9;   // of the observations, in place 97 to 99 in 100: no need to look further
 constexpr double kMuchBetter = 1.1;  // times the observations explained: else the machine has its word
-
-// A return against a plane of the map, m, and by how much the sigma of a fit falls short because neighbouring
-// residuals share the map's errors: as in plane_step.cpp.
-constexpr double kPairSigma = 0.02;
-constexpr double kInflation = 2.0;
-// What all of a map shares, m: it was made with a machine whose axes were as well known as this one's are at
-// best, 5 mm and, over the lever of PlaneSystem, 0.03 deg.
-constexpr double kMapError = 0.005;
 
 double residual(const QuayObservation& o, const Eigen::Vector3d& centre, const Twist& twist) {
   return o.offset - (o.p_W - centre).cross(o.n_W).dot(twist.head<3>()) - o.n_W.dot(twist.tail<3>());
@@ -40,13 +33,18 @@ struct Fit {
 Fit fit(std::span<const QuayObservation> observations, const Eigen::Vector3d& centre,
         std::span<const double> kernels) {
   Fit fit;
-  for (const double kernel : kernels) {
-    PlaneSystem system(centre, kernel);
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    PlaneSystem system(centre, kernels[i]);
     for (const QuayObservation& o : observations) {
       system.add(o.p_W, o.n_W, residual(o, centre, fit.twist));
     }
-    fit.twist -= system.solve().twist;  // the system moves returns onto planes, E the other way
+    const Twist step = system.solve().twist;
+    fit.twist -= step;  // the system moves returns onto planes, E the other way
     fit.H = system.normal_matrix();
+    const bool again = i + 1 < kernels.size() && kernels[i + 1] == kernels[i];
+    if (again && PlaneSystem::kLever * step.head<3>().norm() + step.tail<3>().norm() < kSettled) {
+      break;
+    }
   }
   for (const QuayObservation& o : observations) {
     fit.agreeing += std::abs(residual(o, centre, fit.twist)) <= kAgrees ? 1 : 0;
@@ -66,7 +64,8 @@ std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
     const double worth = eigen.eigenvalues()[i];
     if (worth >= PlaneSystem::kFewestPairs) {
       const Twist direction = scale.cwiseProduct(eigen.eigenvectors().col(i));
-      const double sigma = std::hypot(kInflation * kPairSigma / std::sqrt(worth), kMapError);
+      const double sigma = std::hypot(PlaneSystem::kInflation * PlaneSystem::kPairSigma / std::sqrt(worth),
+                                      Misplacement::kShared);
       measured.push_back({direction, direction.dot(fit.twist), sigma});
     }
   }

@@ -24,6 +24,10 @@ struct Misplacement {
     double sigma;
   };
 
+  /// What all of a quay's map or top shares, m: it was made with a machine whose axes were as well known as
+  /// this one's are at best, 5 mm and, over the lever of PlaneSystem, 0.03 deg.
+  static constexpr double kShared = 0.005;
+
   Eigen::Vector3d centre_W = Eigen::Vector3d::Zero();  // what the twist is about
   Twist twist = Twist::Zero();                         // along the directions held, nothing along the others
   std::vector<Measurement> measured;                   // six when all axes are held
@@ -37,7 +41,8 @@ struct Misplacement {
   }
   /// Whether this is where the twist puts it, give or take 10 cm.
   [[nodiscard]] bool agrees(const QuayObservation& o) const;
-  [[nodiscard]] bool holds_all() const { return measured.size() == 6; }
+  static constexpr std::size_t kDirections = 6;
+  [[nodiscard]] bool holds_all() const { return measured.size() == kDirections; }
 };
 
 [[nodiscard]] Misplacement find_misplacement(std::span<const QuayObservation> observations);

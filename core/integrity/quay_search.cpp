@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -10,104 +11,205 @@
 namespace hulltrack {
 namespace {
 
+/// What may be off: a joint, or the mount turned about an axis of W.
+enum class Suspect : std::uint8_t { travel, slew, luff, mount_x, mount_y, mount_z };
+
 struct Guess {
-  JointName joint;
-  double reads_too_much;  // m, deg
-  [[nodiscard]] double amount() const {
-    return joint == JointName::travel ? reads_too_much : radians(reads_too_much);
-  }
+  Suspect suspect;
+  double off;  // m, deg
 };
 
-// Each reaches half a metre to both sides, as far as pairs do: 0.75 deg at a lever of 40 m. What is nearer
-// than the nearest is seen without a guess; farther off, a slew is beyond hull.max_yaw, a luff beyond
-// hull.max_heel and max_trim, and of a travel the walls are seen through.
-constexpr JointName kTravel = JointName::travel;
-constexpr JointName kSlew = JointName::slew;
-constexpr JointName kLuff = JointName::luff;
-constexpr std::array<Guess, 20> kGuesses = {{
-    {kTravel, 1.0}, {kTravel, -1.0}, {kSlew, 1.5},    {kSlew, -1.5},   {kLuff, 1.5},
-    {kLuff, -1.5},  {kTravel, 2.0},  {kTravel, -2.0}, {kSlew, 3.0},    {kSlew, -3.0},
-    {kLuff, 3.0},   {kLuff, -3.0},   {kTravel, 3.0},  {kTravel, -3.0}, {kLuff, 4.5},
-    {kLuff, -4.5},  {kTravel, 4.0},  {kTravel, -4.0}, {kTravel, 5.0},  {kTravel, -5.0},
-}};
+/// About the origin of W.
+Twist twist_of(const Guess& guess, const MachineConfig& machine, const MachineStand& stand) {
+  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  if (guess.suspect > Suspect::luff) {
+    return radians(guess.off) * mount_twists(stand, origin).at(static_cast<std::size_t>(guess.suspect));
+  }
+  const auto joint = static_cast<JointName>(guess.suspect);
+  return (joint == JointName::travel ? guess.off : radians(guess.off)) *
+         joint_twist(machine, stand, joint, origin);
+}
 
-constexpr QuaySight::Sample kSample = {QuaySight::kLookedUp, {30, 30, 30, 30}};
+/// A twist, about a point that is `from_there` away.
+Twist about(const Eigen::Vector3d& from_there, const Twist& twist) {
+  Twist moved = twist;
+  moved.tail<3>() += twist.head<3>().cross(from_there);
+  return moved;
+}
+
+// Each reaches half a metre to both sides, as far as pairs do, at the levers of a boom (60 m for walls, 40 m
+// for the top). What is nearer than the nearest is seen without a guess; farther off, a slew is beyond
+// hull.max_yaw, a luff beyond hull.max_heel and max_trim, and of a travel the walls are seen through.
+constexpr Suspect kTravel = Suspect::travel;
+constexpr Suspect kSlew = Suspect::slew;
+constexpr Suspect kLuff = Suspect::luff;
+constexpr Suspect kMountX = Suspect::mount_x;
+constexpr Suspect kMountY = Suspect::mount_y;
+constexpr Suspect kMountZ = Suspect::mount_z;
+constexpr std::array<Guess, 19> kEitherWay = {{
+    {kTravel, 1.0}, {kSlew, 0.9},   {kLuff, 1.5},   {kTravel, 2.0}, {kSlew, 1.6},
+    {kLuff, 3.0},   {kTravel, 3.0}, {kSlew, 2.3},   {kLuff, 4.5},   {kTravel, 4.0},
+    {kSlew, 3.0},   {kTravel, 5.0}, {kSlew, 3.7},   {kMountX, 1.6}, {kMountX, 2.8},
+    {kMountY, 1.6}, {kMountY, 2.8}, {kMountZ, 1.6}, {kMountZ, 2.8},
+}};
+constexpr std::size_t kGuesses = 2 * kEitherWay.size();
+
+Guess guess_number(std::size_t number) {
+  const Guess& guess = kEitherWay.at(number / 2);
+  return {guess.suspect, number % 2 == 0 ? guess.off : -guess.off};
+}
+
+constexpr int kGuessesAFrame = 2;
+constexpr int kFramesOfAGuess = 6;
+constexpr double kKept = 1.0 - 1.0 / QuaySight::kFrames;  // of earlier frames, as observations are
+
+constexpr std::size_t kOfClass = 30;  // returns that are held against planes
 
 // Where nothing is in its place a sixth of the returns near planes are on them by chance, where all is six
-// times as many. Three is the middle of one and six as ratios go, and at ten returns three sigma off either.
+// times as many. Three is the middle of one and six as ratios go.
 constexpr double kMuchBetter = 3.0;
-constexpr double kFewest = 10.0;
-// Of no class a wrong guess explains more than chance does, and a true one as much as there is.
-constexpr double kLoses = 0.5;
+// Of each class a true guess explains as much as can be, and the scatter of a sample of 30 is a tenth of it.
+// Of fewer returns in place than these a loss may be chance.
+constexpr double kLoses = 0.7;
+constexpr double kFewest = 13.0;
+// Too few to place the machine by, offsets tell nevertheless that there may be more to it: these and half of
+// all agree with each other.
+constexpr double kPromising = 3.0;
+constexpr double kConsenting = 0.5;
+constexpr double kSpread = 0.2;  // m: what returns on planes spread over, and the turn of a joint besides
+
+// So many returns a frame, of a thousand, in the mean over the frames of a guess. What stands about a quay
+// lies on planes of its map where a guess is wrong as well: in the simulator's berths at up to ten a frame.
+constexpr double kFewestAFrame = 12.0;
+constexpr int kFewestFrames = 2;
+constexpr int kMostFrames = 8;  // QuaySight::kOfClass returns are these
 
 // A surface tells of a joint when it is moved across itself by half of all that it is moved.
 constexpr double kTells = 0.5;
 
-// The root of a count scatters by a half, whatever the count; three times that is no chance.
-constexpr double kByChance = 1.5;
-
-/// How much more of the quay is met there, in roots of counts: of a class that is rare as of one that is not.
-double more(const QuaySearch::Met& there, const QuaySearch::Met& in_place) {
-  double sum = 0.0;
-  for (std::size_t surface = 0; surface < there.size(); ++surface) {
-    sum += std::sqrt(there[surface]) - std::sqrt(in_place[surface]);
-  }
-  return sum;
-}
+constexpr double kSigmas = 3.0;
+// Of the returns near planes at least so many are off them by chance, at edges, m.
+constexpr double kLeastOff = 0.05;
 
 class Extent {
  public:
-  void add(const Point& p) { box_ = box_ ? Box{box_->min.cwiseMin(p), box_->max.cwiseMax(p)} : Box{p, p}; }
+  void add(const Eigen::Vector3d& p_W) {
+    const Point p = p_W.cast<float>();
+    box_ = box_ ? Box{box_->min.cwiseMin(p), box_->max.cwiseMax(p)} : Box{p, p};
+  }
   [[nodiscard]] float length() const { return box_ ? (box_->max - box_->min).norm() : 0.0F; }
 
  private:
   std::optional<Box> box_;
 };
 
+/// Is the quay explained there no worse than in place? Roots of counts are compared, so that a class that is
+/// rare counts as one that is not; what is explained there falls short of what is explained here by no more
+/// than chance.
+bool no_worse(const QuaySearch::MetOfEach& there, const QuaySearch::MetOfEach& in_place) {
+  double more = 0.0;
+  double variance = 0.0;
+  for (std::size_t surface = 0; surface < there.size(); ++surface) {
+    more += std::sqrt(there[surface].returns) - std::sqrt(in_place[surface].returns);
+    variance += there[surface].variance_of_root + in_place[surface].variance_of_root;
+  }
+  return more > -kSigmas * std::sqrt(variance);
+}
+
+/// The most offsets that lie within kSpread of each other.
+double most_consenting(std::vector<double>& offsets) {
+  std::sort(offsets.begin(), offsets.end());
+  std::size_t most = 0;
+  for (std::size_t first = 0, last = 0; last < offsets.size(); ++last) {
+    while (offsets[last] - offsets[first] > kSpread) {
+      ++first;
+    }
+    most = std::max(most, last - first + 1);
+  }
+  return double(most);
+}
+
 }  // namespace
 
-QuaySearch::QuaySearch(bool has_region) : sight_(has_region, kSample) {}
-
-QuaySearch::Met QuaySearch::met(const QuaySighting& sighting, const Misplacement& seen) {
-  Met met{};
+QuaySearch::MetOfEach QuaySearch::met(const QuaySighting& sighting, const Misplacement& seen) {
+  std::array<double, QuayMap::kClasses> near{};
+  std::array<double, QuayMap::kClasses> on{};
   for (const QuayObservation& o : sighting.observations) {
     const auto surface = static_cast<std::size_t>(o.surface);
-    met.at(surface) += o.newest && seen.agrees(o) ? sighting.each_stands_for.at(surface) : 0.0;
+    near.at(surface) += o.age == 0 ? 1.0 : 0.0;
+    on.at(surface) += o.age == 0 && seen.agrees(o) ? 1.0 : 0.0;
+  }
+  MetOfEach met{};
+  for (std::size_t surface = 0; surface < met.size(); ++surface) {
+    // Of k out of n that were drawn, each for s others, the estimate s k scatters by s sqrt(n p (1 - p)).
+    const double s = sighting.each_stands_for.at(surface);
+    const double off = std::max(kLeastOff, near[surface] > 0.0 ? 1.0 - on[surface] / near[surface] : 0.0);
+    met[surface] = {s * on[surface], s * off / 4.0};
   }
   return met;
 }
 
-bool QuaySearch::would_find(JointName joint, const QuaySighting& sighting, const Misplacement& seen,
-                            const MachineConfig& machine, const MachineStand& stand) {
-  const Twist twist = joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  double met = 0.0;  // in this frame
-  Extent extent;     // in the last ones
+std::array<bool, 3> QuaySearch::would_find(const QuaySighting& sighting, const Misplacement& seen,
+                                           const MachineConfig& machine, const MachineStand& stand) {
+  constexpr std::array kJoints = {JointName::travel, JointName::slew, JointName::luff};
+  std::array<Twist, 3> twists;
+  std::array<OfEach, 3> met{};
+  OfEach frames{};  // that there are observations of
+  std::array<std::array<Extent, QuayMap::kClasses>, 3> extents;
+  std::transform(kJoints.begin(), kJoints.end(), twists.begin(), [&](JointName joint) {
+    return joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
+  });
   for (const QuayObservation& o : sighting.observations) {
-    const Eigen::Vector3d moved = twist.tail<3>() + twist.head<3>().cross(o.p_W);
-    if (seen.agrees(o) && std::abs(o.n_W.dot(moved)) > kTells * moved.norm()) {
-      met += o.newest ? sighting.each_stands_for.at(static_cast<std::size_t>(o.surface)) : 0.0;
-      extent.add(o.p_W.cast<float>());
+    const auto surface = static_cast<std::size_t>(o.surface);
+    frames.at(surface) = std::max(frames.at(surface), 1.0 + o.age);
+    if (!seen.agrees(o)) {
+      continue;
+    }
+    for (std::size_t joint = 0; joint < twists.size(); ++joint) {
+      const Eigen::Vector3d moved = twists[joint].tail<3>() + twists[joint].head<3>().cross(o.p_W);
+      if (std::abs(o.n_W.dot(moved)) > kTells * moved.norm()) {
+        met[joint].at(surface) += sighting.each_stands_for.at(surface);
+        if (o.age == 0) {
+          extents[joint].at(surface).add(o.p_W);  // as the frames of a guess are fewer
+        }
+      }
     }
   }
-  return met >= kFewest && extent.length() > kLongestThing;
+  std::array<bool, 3> found{};
+  for (std::size_t joint = 0; joint < found.size(); ++joint) {
+    for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
+      found[joint] = found[joint] ||
+                     (met[joint][surface] > 0.0 && met[joint][surface] >= kFewestAFrame * frames[surface] &&
+                      extents[joint][surface].length() > kLongestThing);
+    }
+  }
+  return found;
 }
 
-QuaySearch::Sight QuaySearch::sight_of(const QuayMap& map, const FilteredScan& scan,
-                                       const MachineConfig& machine, const MachineStand& stand,
-                                       JointName joint, double amount) {
-  const Twist moves = amount * joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  const QuaySighting& sighting = sight_.look_elsewhere(map, scan, se3_exp(moves).inverse());
+QuaySearch::Sight QuaySearch::sight_of(const QuayMap& map, const Cloud& looked_up_W, const Twist& off) {
+  const QuaySighting& sighting = sight_.look_elsewhere(map, looked_up_W, se3_exp(-off), kOfClass);
   Sight sight{.seen = find_misplacement(sighting.observations)};
   sight.met = met(sighting, sight.seen);
   std::array<Extent, QuayMap::kClasses> extents;
+  std::array<std::vector<double>, QuayMap::kClasses> offsets;
   for (const QuayObservation& o : sighting.observations) {
+    const auto surface = static_cast<std::size_t>(o.surface);
+    offsets.at(surface).push_back(o.offset);
     if (sight.seen.agrees(o)) {
-      extents.at(static_cast<std::size_t>(o.surface)).add(o.p_W.cast<float>());
+      sight.met_since.at(surface) += 1.0;
+      extents.at(surface).add(o.p_W);
     }
+  }
+  for (std::size_t surface = 0; surface < offsets.size(); ++surface) {
+    const double s = sighting.each_stands_for.at(surface);
+    const double consenting = most_consenting(offsets[surface]);
+    sight.met_since[surface] *= s;
+    sight.consenting[surface] =
+        consenting >= kConsenting * double(offsets[surface].size()) ? s * consenting : 0.0;
   }
   std::transform(extents.begin(), extents.end(), sight.extent.begin(),
                  [](const Extent& extent) { return extent.length(); });
-  const Twist there = amount * joint_twist(machine, stand, joint, sight.seen.centre_W);
+  const Twist there = about(sight.seen.centre_W, off);
   sight.seen.twist += there;
   for (Misplacement::Measurement& measured : sight.seen.measured) {
     measured.offset += measured.direction.dot(there);
@@ -115,34 +217,62 @@ QuaySearch::Sight QuaySearch::sight_of(const QuayMap& map, const FilteredScan& s
   return sight;
 }
 
-std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const FilteredScan& scan,
+std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& looked_up_W,
                                              const MachineConfig& machine, const MachineStand& stand,
-                                             const Met& in_place) {
-  const Guess& guess = kGuesses[guess_];
-  Sight there = sight_of(map, scan, machine, stand, guess.joint, guess.amount());
-  bool better = false;
-  bool worse = false;
-  for (std::size_t surface = 0; surface < there.met.size(); ++surface) {
-    better =
-        better || (there.met[surface] >= kFewest && there.met[surface] > kMuchBetter * in_place[surface] &&
-                   there.extent[surface] > kLongestThing);
-    worse = worse || there.met[surface] < kLoses * in_place[surface];
-  }
-  if (!better || worse) {
-    guess_ = (guess_ + 1) % kGuesses.size();
-    return std::nullopt;
-  }
-  return std::move(there.seen);
-}
-
-std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const FilteredScan& scan,
-                                                   const MachineConfig& machine, const MachineStand& stand,
-                                                   const Met& in_place, JointName joint, double amount) {
-  Sight there = sight_of(map, scan, machine, stand, joint, amount);
-  if (more(there.met, in_place) > -kByChance) {
-    return std::move(there.seen);
+                                             const MetOfEach& in_place) {
+  for (int i = 0; i < kGuessesAFrame; ++i) {
+    if (asked_ == 0 || asked_ >= kFramesOfAGuess) {
+      go_on();
+    }
+    ++asked_;
+    frames_ = std::min(frames_ + 1, kMostFrames);
+    Sight there = sight_of(map, looked_up_W, twist_of(guess_number(guess_), machine, stand));
+    bool better = false;
+    bool promising = false;
+    bool worse = false;
+    for (std::size_t surface = 0; surface < in_place_.size(); ++surface) {
+      in_place_[surface] = kKept * in_place_[surface] + in_place[surface].returns;
+      const double here = in_place_[surface];
+      better = better || (frames_ >= kFewestFrames &&
+                          there.met_since[surface] >= std::max(kFewestAFrame * frames_, kMuchBetter * here) &&
+                          there.extent[surface] > kLongestFace);
+      promising = promising || there.consenting[surface] >= std::max(kPromising, kMuchBetter * here);
+      const double now = in_place[surface].returns;
+      worse = worse || (now >= kFewest && there.met[surface].returns < kLoses * now);
+    }
+    if (better && !worse) {
+      return std::move(there.seen);
+    }
+    if (promising && !worse) {
+      return std::nullopt;  // the next frame is asked as well
+    }
+    asked_ = 0;
   }
   return std::nullopt;
+}
+
+void QuaySearch::go_on() {
+  frames_ = 0;
+  guess_ = (guess_ + 1) % kGuesses;
+  asked_ = 0;
+  in_place_.fill(0.0);
+  sight_.forget();
+}
+
+std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Cloud& looked_up_W,
+                                                   const MachineConfig& machine, const MachineStand& stand,
+                                                   const MetOfEach& in_place, JointName joint,
+                                                   double amount) {
+  go_on();  // what has been observed is of a guess
+  const Twist off = amount * joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
+  Sight there = sight_of(map, looked_up_W, off);
+  sight_.forget();
+  return no_worse(there.met, in_place) ? std::optional(std::move(there.seen)) : std::nullopt;
+}
+
+void QuaySearch::forget() {
+  go_on();
+  guess_ = 0;
 }
 
 }  // namespace hulltrack

@@ -25,7 +25,10 @@ bool beneath_or_above(const Box& area_W, const Point& p) {
 
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
                                         std::span<const ScanView> views) {
-  choose_returns_near(map, scan, Pose::Identity());
+  begin_frame();
+  looked_up_W_.clear();
+  take_evenly(scan, kLookedUp, [this](const Point& p) { looked_up_W_.push_back(p); });
+  choose_returns_near(map, looked_up_W_, kReturnsOf);
   observe_planes(map);
   for (const ScanView& view : views) {
     for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
@@ -35,10 +38,16 @@ const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& 
   return gather();
 }
 
-const QuaySighting& QuaySight::look_elsewhere(const QuayMap& map, const FilteredScan& scan,
-                                              const Pose& T_true_said) {
-  forget();
-  choose_returns_near(map, scan, T_true_said);
+const QuaySighting& QuaySight::look_elsewhere(const QuayMap& map, const Cloud& returns_W,
+                                              const Pose& T_true_said, std::size_t of_class) {
+  begin_frame();
+  const Eigen::Isometry3f moves(T_true_said.cast<float>());
+  looked_up_W_.resize(returns_W.size());
+  std::transform(returns_W.begin(), returns_W.end(), looked_up_W_.begin(),
+                 [&](const Point& p) { return moves * p; });
+  OfClass most;
+  most.fill(of_class);
+  choose_returns_near(map, looked_up_W_, most);
   observe_planes(map);
   return gather();
 }
@@ -87,7 +96,7 @@ void QuaySight::forget() {
 void QuaySight::observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W,
                         double offset) {
   recent_.at(static_cast<std::size_t>(surface))
-      .push_back({turn_, {return_W.cast<double>() - offset * n_W, n_W, offset, surface, true}});
+      .push_back({turn_, {return_W.cast<double>() - offset * n_W, n_W, offset, surface, 0}});
 }
 
 const QuaySighting& QuaySight::gather() {
@@ -98,7 +107,7 @@ const QuaySighting& QuaySight::gather() {
     }
     for (const Recent& recent : of_class) {
       seen_.observations.push_back(recent.observation);
-      seen_.observations.back().newest = recent.turn == turn_;
+      seen_.observations.back().age = turn_ - recent.turn;
     }
   }
   return seen_;
@@ -141,14 +150,11 @@ void QuaySight::choose_returns(const FilteredScan& scan) {
 }
 
 /// Of each class evenly out of those that may be of it; one that may be of several is of the rarest.
-void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan, const Pose& T_true_said) {
-  const Eigen::Isometry3f moves(T_true_said.cast<float>());
-  begin_frame();
+void QuaySight::choose_returns_near(const QuayMap& map, const Cloud& looked_up_W, const OfClass& most) {
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
-  take_evenly(scan, sample_.looked_up, [&](const Point& said_W) {
-    const Point p = moves * said_W;
+  for (const Point& p : looked_up_W) {
     const SurfaceCells::Classes classes = map.classes_near(p);
     for (const SurfaceClass surface : kRarestFirst) {
       if ((classes >> static_cast<unsigned>(surface) & 1U) != 0) {
@@ -156,15 +162,17 @@ void QuaySight::choose_returns_near(const QuayMap& map, const FilteredScan& scan
         break;
       }
     }
-  });
+  }
   for (std::size_t surface = 0; surface < candidates_W_.size(); ++surface) {
     const Cloud& of_class = candidates_W_[surface];
-    const std::size_t most = sample_.of_class.at(surface);
-    const std::size_t stride = std::max<std::size_t>(1, (of_class.size() + most - 1) / most);
-    seen_.each_stands_for[surface] = static_cast<double>(stride);
+    const std::size_t stride =
+        std::max<std::size_t>(1, (of_class.size() + most[surface] - 1) / most[surface]);
+    const std::size_t before = returns_W_.size();
     for (std::size_t i = turn_ % stride; i < of_class.size(); i += stride) {
       returns_W_.push_back(of_class[i]);
     }
+    const std::size_t taken = returns_W_.size() - before;
+    seen_.each_stands_for[surface] = taken > 0 ? double(of_class.size()) / double(taken) : 1.0;
   }
 }
 

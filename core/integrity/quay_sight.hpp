@@ -31,7 +31,7 @@ struct QuayObservation {
   Eigen::Vector3d n_W;  // its unit normal
   double offset;        // n . (return - p), m
   SurfaceClass surface;
-  bool newest;  // of the last frame
+  std::uint32_t age;  // frames since then: 0 of the newest
 };
 
 /// Planes of the map of one class that rays reached.
@@ -59,27 +59,24 @@ class QuaySight {
   /// Observations are kept for so many frames, a second, and of each class the newest: few returns are of
   /// walls, and most of the quay's top.
   static constexpr std::uint32_t kFrames = 10;
-  static constexpr std::size_t kOfClass = 150;
+  static constexpr std::size_t kOfClass = 100;
   static constexpr float kGate = QuayMap::kGate;
   static constexpr float kFarthest = 60.0F;  // m from the sensor
 
-  /// How many returns of a frame are asked what they may be of, and of each class how many are taken.
-  struct Sample {
-    std::size_t looked_up = kLookedUp;
-    std::array<std::size_t, QuayMap::kClasses> of_class = kReturnsOf;
-  };
-
   /// `has_region`: the scan was cropped to the hull's region, so that what is outside is not hull.
-  explicit QuaySight(bool has_region) : QuaySight(has_region, Sample{}) {}
-  QuaySight(bool has_region, const Sample& sample) : has_region_(has_region), sample_(sample) {}
+  explicit QuaySight(bool has_region) : has_region_(has_region) {}
 
   /// What the scan shows of a map's planes. The answer lives until the next call.
   [[nodiscard]] const QuaySighting& look_for(const QuayMap& map, const FilteredScan& scan,
                                              std::span<const ScanView> views);
 
-  /// The same of this frame alone, were the sensor where `T_true_said` puts what it measured (W to W).
-  [[nodiscard]] const QuaySighting& look_elsewhere(const QuayMap& map, const FilteredScan& scan,
-                                                   const Pose& T_true_said);
+  /// The returns that the last look_for() of a map looked up.
+  [[nodiscard]] const Cloud& looked_up_W() const { return looked_up_W_; }
+
+  /// What these returns say of a map were the sensor where `T_true_said` puts what it measured (W to W), with
+  /// what was observed earlier until forget(). At most so many of each class are taken.
+  [[nodiscard]] const QuaySighting& look_elsewhere(const QuayMap& map, const Cloud& returns_W,
+                                                   const Pose& T_true_said, std::size_t of_class);
 
   /// Of the quay's top, in the level extent of `area_W` if there is one. Precondition: there is a region.
   [[nodiscard]] const QuaySighting& look_for(const QuayPlane& top, const FilteredScan& scan,
@@ -96,15 +93,16 @@ class QuaySight {
   template <typename Take>
   void take_evenly(const FilteredScan& scan, std::size_t most, Take take) const;
   void choose_returns(const FilteredScan& scan);
-  void choose_returns_near(const QuayMap& map, const FilteredScan& scan, const Pose& T_true_said);
+  using OfClass = std::array<std::size_t, QuayMap::kClasses>;
+  void choose_returns_near(const QuayMap& map, const Cloud& looked_up_W, const OfClass& most);
   void observe_planes(const QuayMap& map);
   void observe(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);
   const QuaySighting& gather();
   void look_through(const QuayMap& map, std::size_t surface, const ScanView& view);
 
   bool has_region_;
-  Sample sample_;
   std::uint32_t turn_ = 0;  // which part of the returns and planes is looked at
+  Cloud looked_up_W_;
   Cloud returns_W_;
   std::array<Cloud, QuayMap::kClasses> candidates_W_;
   std::vector<Neighbour> nearest_;

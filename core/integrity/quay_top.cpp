@@ -8,6 +8,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/integrity/misplacement.hpp"
+#include "core/registration/plane_system.hpp"
+
 namespace hulltrack {
 namespace {
 
@@ -24,10 +27,6 @@ constexpr int kFits = 3;
 // Returns are spread by this, m, standard deviation, across the way in which they are spread least: then an
 // error of 5 mm that they share turns the plane by 0.1 deg.
 constexpr double kLeastSpread = 3.0;
-// As in misplacement.cpp: of a return, by how much a fit's sigma falls short, and what all share. m
-constexpr double kSigma = 0.02;
-constexpr double kInflation = 2.0;
-constexpr double kShared = 0.005;
 constexpr double kOutlying = 0.05;  // of the returns at either end of the area: they may be of anything
 
 /// z = c.z + c.x * x + c.y * y.
@@ -172,8 +171,10 @@ std::optional<SeenTop> find_quay_top(std::span<const Point> returns_W) {
     return std::nullopt;
   }
   // A quay is uneven, and a part of it slopes otherwise than the whole.
-  const double uneven = std::sqrt(std::max(0.0, sums.squares / n - kSigma * kSigma));
-  const double sigma = std::hypot(kInflation * kSigma / std::sqrt(n), kShared, uneven);
+  const double uneven =
+      std::sqrt(std::max(0.0, sums.squares / n - PlaneSystem::kPairSigma * PlaneSystem::kPairSigma));
+  const double sigma = std::hypot(PlaneSystem::kInflation * PlaneSystem::kPairSigma / std::sqrt(n),
+                                  Misplacement::kShared, uneven);
   const Eigen::Vector2d at = mean + middle.head<2>().cast<double>();
   const double height = double(plane->z()) + double(plane->x()) * at.x() + double(plane->y()) * at.y();
   return SeenTop{

@@ -28,6 +28,11 @@ class PlaneSystem {
   /// A direction held by less than this many pairs that face it squarely is free: any few of them may be of
   /// something that is not in the map.
   static constexpr double kFewestPairs = 10.0;
+  /// Of a return against a plane of a map, m.
+  static constexpr double kPairSigma = 0.02;
+  /// sigma^2 H^-1 of scan matching is overconfident, because neighbouring residuals share the map's errors:
+  /// NEES/6 of 3 has been measured with a robust kernel; 2^2 covers it.
+  static constexpr double kInflation = 2.0;
 
   /// `centre`: a point near the data, m. `kernel`: m, > 0.
   PlaneSystem(const Eigen::Vector3d& centre, double kernel) : centre_(centre), kernel2_(kernel * kernel) {}

@@ -25,9 +25,6 @@ constexpr std::array<Stage, 4> kApproach = {
 
 constexpr int kInnerSteps = 2;
 
-// Of a return against a plane of the map, m: what a prior of the bend is weighed against.
-constexpr double kPairSigma = 0.02;
-
 void report(const PlaneSystem& system, const PlaneSystem::Solution& solution, IcpResult& result) {
   result.matched = system.pairs();
   result.rms_residual = system.rms();
@@ -110,8 +107,9 @@ PlaneIcpResult PointToPlaneIcp::align(std::span<const Point> source, const Plane
   result.T_target_source = T_init;
   result.stop = IcpStop::iteration_limit;
   out.bend = bend.d;
-  const double bend_worth = bend.sigma > 0.0 ? kPairSigma * kPairSigma / (bend.sigma * bend.sigma)
-                                             : std::numeric_limits<double>::infinity();
+  const double bend_worth =
+      bend.sigma > 0.0 ? PlaneSystem::kPairSigma * PlaneSystem::kPairSigma / (bend.sigma * bend.sigma)
+                       : std::numeric_limits<double>::infinity();
   correspondences_.reset(source, map.tree());
   std::span<const Correspondence> pairs;
   Estimate at;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/registration/plane_system.hpp"
 #include "core/tracking/integrity.hpp"
 
 namespace hulltrack {
@@ -14,10 +15,7 @@ constexpr std::size_t kFewestObservations = 12;
 constexpr int kSteps = 5;                // reweighting settles to a tenth of a millimetre in three
 constexpr double kKernel = 0.05;         // m: two to three sigma of a return against a 5 cm map
 constexpr double kSmallestSigma = 0.01;  // m: a LiDAR's range noise; a lucky scan is not better than that
-// sigma^2 H^-1 of scan matching is overconfident, because neighbouring residuals share the map's errors:
-// NEES/6 of 3 has been measured on such scenes with a robust kernel; 2^2 covers it.
-constexpr double kInflation = 2.0;
-constexpr double kLength = 10.0;  // m, makes rotations comparable to translations: half a hatch
+constexpr double kLength = 10.0;         // m, makes rotations comparable to translations: half a hatch
 
 struct Normal {
   Matrix6 H = Matrix6::Zero();
@@ -82,7 +80,7 @@ PlaneStep solve_plane_step(std::span<const SurfelObservation> observations,
     x = normal.H.ldlt().solve(normal.g);
     H = normal.H;
   }
-  const double sigma = kInflation * robust_sigma(observations, centre, x);
+  const double sigma = PlaneSystem::kInflation * robust_sigma(observations, centre, x);
   Eigen::DiagonalMatrix<double, 6> scale;
   scale.diagonal() << Eigen::Vector3d::Constant(1.0 / kLength), Eigen::Vector3d::Ones();
   const Matrix6 covariance = scale * (sigma * sigma * H.inverse()) * scale;

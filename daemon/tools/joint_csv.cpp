@@ -19,6 +19,7 @@ std::string joint_csv_line(const TrackResult& r) {
     } else {
       line += ",,";
     }
+    append_field(line, std::uint64_t{doubt.finds_large});
   }
   line.pop_back();
   return line;

@@ -49,11 +49,12 @@ def frame_times(plc_):
     return at(np.arange(0.05, (plc_["t_ns"][-1] - BEGAN) * 1e-9, 0.1))
 
 
-def seen(plc_, **hidden):
+def seen(plc_, far=True, **hidden):
     """A quay that hides so much of each joint, the table's amounts unless told."""
     t_ns = frame_times(plc_)
     amounts = {"travel": 0.13, "slew": 0.4, "luff": 0.8, **hidden}
-    return shows.View(t_ns, {joint: np.broadcast_to(amount, len(t_ns)) for joint, amount in amounts.items()})
+    return shows.View(t_ns, {joint: np.broadcast_to(amount, len(t_ns)) for joint, amount in amounts.items()},
+                      {joint: np.full(len(t_ns), far) for joint in amounts})
 
 
 class WhenItShows(unittest.TestCase):
@@ -106,6 +107,12 @@ class WhenItShows(unittest.TestCase):
         self.assertEqual(count, len(t_ns) - 30)
         self.assertEqual(shows.beyond_the_table(attack(("luff",)), plc_, false, at(0.0), t_ns).sum(), 0)
 
+    def test_a_large_error_shows_where_it_would_be_found_and_a_small_one_anywhere(self):
+        for amount, shown in ((0.3, True), (1.0, False)):
+            false = plc(10, d_x=lambda s, amount=amount: amount)
+            owed = self.owed(attack(("travel",)), plc(10), false, seen(plc(10), far=False))
+            self.assertEqual(bool(owed.any()), shown)
+
     def test_a_mount_shows_while_the_quay_shows_all_joints(self):
         self.assertAlmostEqual(self.shown(attack(()), plc(10)), 0.05, delta=0.11)
         self.assertIsNone(self.shown(attack(()), plc(10), luff=math.inf))
@@ -113,7 +120,8 @@ class WhenItShows(unittest.TestCase):
 
     def test_the_view_is_read_from_what_replay_writes(self):
         table = {"t_ns": at([0.05]), "travel_hidden": np.array([0.1]), "slew_hidden": np.array([math.nan]),
-                 "luff_hidden": np.array([0.7])}
+                 "luff_hidden": np.array([0.7]), "travel_far": np.array([1]), "slew_far": np.array([0]),
+                 "luff_far": np.array([1])}
         view = shows.view(table)
         self.assertEqual([view.hides(joint, at([0.05]))[0] for joint in ("travel", "slew")], [0.1, math.inf])
 
@@ -142,6 +150,8 @@ class WhenItShows(unittest.TestCase):
         self.assertAlmostEqual(self.shown(attack(("travel",)), fast, 23.0, with_map=False, falsified=still), 25.5,
                                delta=0.3)
         self.assertIsNone(self.shown(attack(("travel",)), fast, with_map=False))
+        runs_too = truth(65, x=lambda s: 0.15 * s)
+        self.assertIsNone(self.shown(attack(("travel",)), fast, with_map=False, falsified=still, own=runs_too))
 
     def test_a_turn_is_as_fast_as_its_lever_is_long(self):
         # 1 deg/s at 12 m: 0.21 m/s; at 24 m 0.42 m/s.
@@ -158,6 +168,10 @@ class WhenItShows(unittest.TestCase):
         after = self.shown(attack(("slew",)), slew, with_map=False, falsified=false)
         self.assertAlmostEqual(after, 35.35, delta=0.3)
         self.assertIsNone(self.shown(attack(("slew",)), slew, with_map=False, falsified=slew))
+        # 0.38 deg are less than a map hides, and while it confirms the joints moves are not asked.
+        little_off = {**slew, "theta_r": 1.024 * slew["theta_r"]}
+        self.assertIsNotNone(self.shown(attack(("slew",)), slew, with_map=False, falsified=little_off))
+        self.assertIsNone(self.shown(attack(("slew",)), slew, falsified=little_off))
         slightly = {**slew, "theta_r": 1.02 * slew["theta_r"]}  # s = 0.0196
         self.assertIsNone(self.shown(attack(("slew",)), slew, with_map=False, falsified=slightly))
         # The same of 6 deg takes six moves: nine standard errors of 0.1 / 6.

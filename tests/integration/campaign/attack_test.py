@@ -61,9 +61,10 @@ elif sys.argv[1] == "replay":
     rows = [(int(r["t_ns"]), float(r["d_x"])) for r in csv.DictReader(open(folder / "plc.csv"))]
     if "--joints" in sys.argv:
         with open(option("--joints"), "w") as table:
-            table.write("frame,t_ns,travel_off,travel_hidden,slew_off,slew_hidden,luff_off,luff_hidden\n")
+            table.write(",".join(["frame,t_ns"] + [f"{j}_off,{j}_hidden,{j}_far" for j in ("travel", "slew", "luff")]))
+            table.write("\n")
             table.writelines(f"{i},{BEGAN + 100_000_000 * i + 50_000_000},"
-                             f"{',' if 'NO_VIEW' in os.environ else '0,0.1'},0,0.3,,\n" for i in range(120))
+                             f"{',,0' if 'NO_VIEW' in os.environ else '0,0.1,1'},0,0.3,1,,,0\n" for i in range(120))
         sys.exit()
     count = (len((folder / "truth.csv").read_text().splitlines()) - 101) // 10
     with open(option("--csv"), "w") as table:

@@ -73,10 +73,10 @@ TEST(FrameCsv, WhatQ1ShouldBeComesLast) {
 
 TEST(JointCsv, AJointThatTheQuayDoesNotShowIsEmpty) {
   TrackResult r = result(3, 0.1, State::tracking);
-  EXPECT_EQ(joint_csv_line(r), "3,350000000,,,,,,");
-  r.joint_doubts[0] = {.reads_too_much = -0.25, .hidden = 0.125};
+  EXPECT_EQ(joint_csv_line(r), "3,350000000,,,0,,,0,,,0");
+  r.joint_doubts[0] = {.reads_too_much = -0.25, .hidden = 0.125, .finds_large = true};
   r.joint_doubts[2] = {.reads_too_much = radians(2.0), .hidden = radians(0.5)};
-  EXPECT_EQ(joint_csv_line(r), "3,350000000,-0.25,0.125,,,2,0.5");
+  EXPECT_EQ(joint_csv_line(r), "3,350000000,-0.25,0.125,1,,,0,2,0.5,0");
 }
 
 TEST(ReplaySummaryText, TellsTheQuaysTopThatWasFoundAsKeysToPaste) {
