@@ -89,11 +89,8 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     const std::array<bool, 3> finds_large = QuaySearch::would_find(*sighting, seen_, machine_, stand);
     confirmed = verdict.known && !verdict.charge && seen_.holds_all() &&
                 std::all_of(finds_large.begin(), finds_large.end(), [](bool finds) { return finds; });
-    if (auto charge = charge_of_elsewhere(*sighting, stand, confirmed, asked, verdict.doubt)) {
-      verdict.charge = std::move(charge);
-      verdict.known = true;
-      confirmed = false;
-    }
+    weigh_other_places(*sighting, stand, confirmed, asked, verdict);
+    confirmed = confirmed && !verdict.charge;
     for (std::size_t joint = 0; joint < finds_large.size(); ++joint) {
       verdict.doubt.joints.at(joint).finds_large = finds_large.at(joint);
     }
@@ -195,38 +192,40 @@ MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplac
 }
 
 /// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
-/// where it is said to be, or better at one of the other places that are tried in turn. `doubt` becomes that
-/// of there. Where all axes are confirmed no other place is tried.
-std::optional<MachineCharge> MachineWitness::charge_of_elsewhere(const QuaySighting& sighting,
-                                                                 const MachineStand& stand, bool confirmed,
-                                                                 const MachineCharge* asked,
-                                                                 MachineDoubt& doubt) {
+/// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
+/// of there then. Where all axes are confirmed no other place is tried.
+void MachineWitness::weigh_other_places(const QuaySighting& sighting, const MachineStand& stand,
+                                        bool confirmed, const MachineCharge* asked, Verdict& verdict) {
   const QuaySearch::MetOfEach in_place = QuaySearch::met(sighting, seen_);
+  const auto charge = [&](const Misplacement& there, const MachineDoubt& doubt) {
+    verdict = {.known = true, .charge = charge_by(doubt, there), .doubt = doubt};
+  };
   if (asked != nullptr) {
     if (const auto there = search_.look_there(*map_, sight_.looked_up_W(), machine_, stand, in_place,
                                               *asked->joint, asked->amount)) {
-      const MachineDoubt doubt_there = doubt_machine(machine_, stand, *there);
-      if (doubt_there.beyond_class) {
-        doubt = doubt_there;
-        return charge_by(doubt, *there);
+      const MachineDoubt doubt = doubt_machine(machine_, stand, *there);
+      if (doubt.beyond_class) {
+        charge(*there, doubt);
+        return;
       }
-      if (doubt_there.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
-        return *asked;  // too little is in view to tell
+      // Too little may be in view to tell: what was charged stands, beside what else this frame shows.
+      if (doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
+        verdict.charge = verdict.charge ? verdict.charge : *asked;
+        verdict.known = true;
+        return;
       }
     }
   }
   if (confirmed) {
-    return std::nullopt;  // as much as that is met by chance nowhere else
+    return;
   }
   if (const auto elsewhere = search_.look(*map_, sight_.looked_up_W(), machine_, stand, in_place)) {
-    const MachineDoubt doubt_there = doubt_machine(machine_, stand, *elsewhere);
-    if (doubt_there.beyond_class) {
+    const MachineDoubt doubt = doubt_machine(machine_, stand, *elsewhere);
+    if (doubt.beyond_class) {
       search_.stay();
-      doubt = doubt_there;
-      return charge_by(doubt, *elsewhere);
+      charge(*elsewhere, doubt);
     }
   }
-  return std::nullopt;
 }
 
 /// A sight of the quay is of a machine that stands once all of its observations are.

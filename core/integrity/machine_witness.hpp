@@ -65,10 +65,8 @@ class MachineWitness {
   void acquit(const Verdict& verdict, const MachineCharge* asked);
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
-  [[nodiscard]] std::optional<MachineCharge> charge_of_elsewhere(const QuaySighting& sighting,
-                                                                 const MachineStand& stand, bool confirmed,
-                                                                 const MachineCharge* asked,
-                                                                 MachineDoubt& doubt);
+  void weigh_other_places(const QuaySighting& sighting, const MachineStand& stand, bool confirmed,
+                          const MachineCharge* asked, Verdict& verdict);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();

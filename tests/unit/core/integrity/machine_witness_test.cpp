@@ -107,8 +107,8 @@ TEST(MachineWitness, AJointThatIsOffByMoreThanAGateIsFoundWhereTheQuayIsMet) {
   // So far to this side no ray goes through a wall, and none of its returns is near it.
   const std::vector<std::pair<Joints, const char*>> cases = {{{-1.3, 0.0, 0.0}, "travel read 1.3"},
                                                              {{-4.8, 0.0, 0.0}, "travel read 4.8"},
-                                                             {{0.0, radians(-2.0), 0.0}, "slew read 2.0"},
-                                                             {{0.0, 0.0, radians(2.5)}, "luff read 2.5"}};
+                                                             {{0.0, radians(-2.2), 0.0}, "slew read 2."},
+                                                             {{0.0, 0.0, radians(2.5)}, "luff read 2."}};
   for (const auto& [too_much, words] : cases) {
     Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
     const MachineFinding finding = frames.run(30, too_much, kAllSurfaces);
@@ -172,7 +172,7 @@ TEST(MachineWitness, AJointIsNotAcquittedBecauseAnotherOneIsCharged) {
   Frames frames;
   frames.run(20, {0.3, 0.0, 0.0});
   // Of the top alone a luff is seen, and seen to be right again; of the travel nothing is.
-  EXPECT_NE(frames.run(20, {0.3, 0.0, radians(2.0)}, {0}).reason.find("luff"), std::string::npos);
+  EXPECT_NE(frames.run(20, {0.3, 0.0, radians(1.2)}, {0}).reason.find("luff"), std::string::npos);
   const MachineFinding finding = frames.run(20, {0.3, 0.0, 0.0}, {0});
   EXPECT_EQ(finding.faults, fault::plc_value);
   EXPECT_NE(finding.reason.find("travel"), std::string::npos) << finding.reason;
