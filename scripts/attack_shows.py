@@ -1,6 +1,7 @@
 """When a fault of the machine has shown, by the table of ICD 3.1: what a map of the quay, bounds, speed and moves tell.
 
-From the true joints and the falsified ones alone. Metres, seconds, degrees, unless a name says otherwise.
+From the true joints and the falsified ones, the ship's own motion, what the map shows of an honest machine, and which
+frames were healthy. Metres, seconds, degrees, unless a name says otherwise.
 """
 import dataclasses
 
@@ -113,7 +114,6 @@ def beyond_the_table(attack, plc, falsified, begin, t_ns):
     return lasting(beyond, t_ns, NOTICE_S)
 
 
-
 # Without a map. Farther off than this the hull lies as she cannot: hull.max_yaw; max_heel and max_trim at the worst
 # slew, deg.
 LARGEST = {"slew": 3.5, "luff": 4.5}
@@ -157,7 +157,6 @@ def lever(plc, joint, machine, point):
     c, s = np.cos(np.radians(plc["theta_r"])), np.sin(np.radians(plc["theta_r"]))
     ahead = from_slew[:, 0] * c + from_slew[:, 1] * s - luff[0]  # in the boom's vertical plane
     return np.hypot(ahead, from_slew[:, 2] - luff[2])
-
 
 
 def apparent_speed(plc, falsified, joint, machine, point):
