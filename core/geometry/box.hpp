@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cassert>
+#include <limits>
 #include <span>
 
 #include "core/geometry/cloud.hpp"
@@ -11,6 +12,21 @@ namespace hulltrack {
 struct Box {
   Point min = Point::Zero();
   Point max = Point::Zero();
+
+  /// Of no points: contains nothing, and grows to the first point that is added.
+  [[nodiscard]] static Box none() {
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    return {Point::Constant(kFar), Point::Constant(-kFar)};
+  }
+  /// Grows so that it contains p.
+  void add(const Point& p) {
+    min = min.cwiseMin(p);
+    max = max.cwiseMax(p);
+  }
+  /// Of opposite corners; 0 of a box of no points.
+  [[nodiscard]] float diagonal() const {
+    return (max.array() >= min.array()).all() ? (max - min).norm() : 0.0F;
+  }
   [[nodiscard]] bool contains(const Point& p) const {
     return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
   }
@@ -19,10 +35,9 @@ struct Box {
 /// The tight box of some points: at least one, all finite.
 [[nodiscard]] inline Box bounding_box(std::span<const Point> points) {
   assert(!points.empty());
-  Box box{points.front(), points.front()};
+  Box box = Box::none();
   for (const Point& p : points) {
-    box.min = box.min.cwiseMin(p);
-    box.max = box.max.cwiseMax(p);
+    box.add(p);
   }
   return box;
 }

@@ -28,8 +28,6 @@ constexpr double kBeyondChance = 8.7;
 // Below this it is an encoder's drift within its class over a short move: 0.05 deg of 2.5 deg.
 constexpr double kLeast = 0.02;
 
-constexpr std::array<JointName, 3> kAllJoints = {JointName::travel, JointName::slew, JointName::luff};
-
 Eigen::Vector3d values(const Joints& joints) { return {joints.d_x, joints.theta_r, joints.theta_p}; }
 
 }  // namespace

@@ -23,8 +23,8 @@ void MachineCharges::add(const MachineCharge& charge) {
 }
 
 const MachineCharge* MachineCharges::next_joint() {
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    asked_ = (asked_ + 1) % kJoints;
+  for (std::size_t i = 0; i < kAllJoints.size(); ++i) {
+    asked_ = (asked_ + 1) % kAllJoints.size();
     if (slots_.at(asked_)) {
       return &*slots_.at(asked_);
     }
@@ -33,7 +33,7 @@ const MachineCharge* MachineCharges::next_joint() {
 }
 
 const MachineCharge* MachineCharges::without_joint() const {
-  return slots_.at(kJoints) ? &*slots_.at(kJoints) : nullptr;
+  return slots_.at(kAllJoints.size()) ? &*slots_.at(kAllJoints.size()) : nullptr;
 }
 
 }  // namespace hulltrack

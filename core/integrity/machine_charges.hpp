@@ -41,12 +41,11 @@ class MachineCharges {
   void drop_all() { slots_ = {}; }
 
  private:
-  static constexpr std::size_t kJoints = 3;
   [[nodiscard]] static std::size_t slot(std::optional<JointName> joint) {
-    return joint ? static_cast<std::size_t>(*joint) : kJoints;
+    return joint ? static_cast<std::size_t>(*joint) : kAllJoints.size();
   }
 
-  std::array<std::optional<MachineCharge>, kJoints + 1> slots_;
+  std::array<std::optional<MachineCharge>, kAllJoints.size() + 1> slots_;
   std::size_t newest_ = 0;
   std::size_t asked_ = 0;
 };

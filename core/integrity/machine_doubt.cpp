@@ -78,7 +78,7 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
   twists.insert(twists.end(), of_reference.begin(), of_reference.end());
   const Weighing weighing(std::move(y), std::move(noise), along(seen, twists));
   double best = 0.0;
-  for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+  for (const JointName joint : kAllJoints) {
     const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
     JointDoubt& here = doubt.joints.at(static_cast<std::size_t>(joint));
     here = weighing.doubt_along(h);

@@ -16,6 +16,7 @@
 namespace hulltrack {
 
 enum class JointName { travel, slew, luff };
+inline constexpr std::array kAllJoints = {JointName::travel, JointName::slew, JointName::luff};
 [[nodiscard]] const char* joint_name(JointName joint);
 
 /// Slower than this, m/s and rad/s by JointName, a joint stands: an encoder's step between two frames. 100 ms

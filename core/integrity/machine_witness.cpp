@@ -19,7 +19,7 @@ constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
 // either.
 constexpr double kLeastShare = 0.5;
 constexpr std::uint32_t kFewestObservations = 60;
-constexpr std::uint32_t kFewestAsked = kFewestObservations / QuaySight::kFrames;  // a frame
+constexpr std::uint32_t kFewestAsked = kFewestObservations / QuayObserver::kFrames;  // a frame
 // With eight in ten of the returns near planes on them, lorries and people among them, the quay is surely
 // found.
 constexpr double kSureShare = 0.8;
@@ -41,15 +41,11 @@ std::optional<QuayPlane> known_top(const QuayConfig& quay) {
 }
 
 float extent(const std::deque<Point>& points) {
-  if (points.empty()) {
-    return 0.0F;
-  }
-  Box box{points.front(), points.front()};
+  Box box = Box::none();
   for (const Point& p : points) {
-    box.min = box.min.cwiseMin(p);
-    box.max = box.max.cwiseMax(p);
+    box.add(p);
   }
-  return (box.max - box.min).norm();
+  return box.diagonal();
 }
 
 }  // namespace
@@ -81,15 +77,16 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     return {};
   }
   remember(*sighting);
-  seen_ = find_misplacement(sighting->observations);
+  seen_ = find_misplacement(sighting->observed->all);
   Verdict verdict = judge(stand);
   bool confirmed = false;
   const MachineCharge* asked = charges_.next_joint();
   if (map_ != nullptr) {
-    const std::array<bool, 3> finds_large = QuaySearch::would_find(*sighting, seen_, machine_, stand);
+    const std::array<bool, 3> finds_large =
+        QuaySearch::would_find(*sighting->observed, seen_, machine_, stand);
     confirmed = verdict.known && !verdict.charge && seen_.holds_all() &&
                 std::all_of(finds_large.begin(), finds_large.end(), [](bool finds) { return finds; });
-    weigh_other_places(*sighting, stand, confirmed, asked, verdict);
+    weigh_other_places(*sighting->observed, stand, confirmed, asked, verdict);
     confirmed = confirmed && !verdict.charge;
     for (std::size_t joint = 0; joint < finds_large.size(); ++joint) {
       verdict.doubt.joints.at(joint).finds_large = finds_large.at(joint);
@@ -194,14 +191,14 @@ MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplac
 /// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
 /// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
 /// of there then. Where all axes are confirmed no other place is tried.
-void MachineWitness::weigh_other_places(const QuaySighting& sighting, const MachineStand& stand,
+void MachineWitness::weigh_other_places(const QuayObservations& observed, const MachineStand& stand,
                                         bool confirmed, const MachineCharge* asked, Verdict& verdict) {
-  const QuaySearch::MetOfEach in_place = QuaySearch::met(sighting, seen_);
+  const QuaySearch::MetOfEach in_place = QuaySearch::met(observed, seen_);
   const auto charge = [&](const Misplacement& there, const MachineDoubt& doubt) {
     verdict = {.known = true, .charge = charge_by(doubt, there), .doubt = doubt};
   };
   if (asked != nullptr) {
-    if (const auto there = search_.look_there(*map_, sight_.looked_up_W(), machine_, stand, in_place,
+    if (const auto there = search_.look_there(*map_, sight_.returns_W(), machine_, stand, in_place,
                                               *asked->joint, asked->amount)) {
       const MachineDoubt doubt = doubt_machine(machine_, stand, *there);
       if (doubt.beyond_class) {
@@ -219,7 +216,7 @@ void MachineWitness::weigh_other_places(const QuaySighting& sighting, const Mach
   if (confirmed) {
     return;
   }
-  if (const auto elsewhere = search_.look(*map_, sight_.looked_up_W(), machine_, stand, in_place)) {
+  if (const auto elsewhere = search_.look(*map_, sight_.returns_W(), machine_, stand, in_place)) {
     const MachineDoubt doubt = doubt_machine(machine_, stand, *elsewhere);
     if (doubt.beyond_class) {
       search_.stay();

@@ -65,7 +65,7 @@ class MachineWitness {
   void acquit(const Verdict& verdict, const MachineCharge* asked);
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
-  void weigh_other_places(const QuaySighting& sighting, const MachineStand& stand, bool confirmed,
+  void weigh_other_places(const QuayObservations& observed, const MachineStand& stand, bool confirmed,
                           const MachineCharge* asked, Verdict& verdict);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/geometry/se3.hpp"
-#include "core/integrity/quay_sight.hpp"
+#include "core/integrity/quay_observer.hpp"
 
 namespace hulltrack {
 
@@ -35,9 +35,7 @@ struct Misplacement {
   std::uint32_t agreeing = 0;  // of them: within 10 cm of where the twist puts them
   /// The twist about another point. Meaningful where all directions are held.
   [[nodiscard]] Twist about(const Eigen::Vector3d& point_W) const {
-    Twist moved = twist;
-    moved.tail<3>() += twist.head<3>().cross(point_W - centre_W);
-    return moved;
+    return about_point(point_W - centre_W, twist);
   }
   /// Whether this is where the twist puts it, give or take 10 cm.
   [[nodiscard]] bool agrees(const QuayObservation& o) const;

@@ -30,13 +30,6 @@ Twist twist_of(const Guess& guess, const MachineConfig& machine, const MachineSt
          joint_twist(machine, stand, joint, origin);
 }
 
-/// A twist, about a point that is `from_there` away.
-Twist about(const Eigen::Vector3d& from_there, const Twist& twist) {
-  Twist moved = twist;
-  moved.tail<3>() += twist.head<3>().cross(from_there);
-  return moved;
-}
-
 // Each reaches half a metre to both sides, as far as pairs do, at the levers of a boom (60 m for walls, 40 m
 // for the top). What is nearer than the nearest is seen without a guess; farther off, a slew is beyond
 // hull.max_yaw, a luff beyond hull.max_heel and max_trim, and of a travel the walls are seen through.
@@ -61,9 +54,9 @@ Guess guess_number(std::size_t number) {
 
 constexpr int kGuessesAFrame = 2;
 constexpr int kFramesOfAGuess = 6;
-constexpr double kKept = 1.0 - 1.0 / QuaySight::kFrames;  // of earlier frames, as observations are
+constexpr double kKept = 1.0 - 1.0 / QuayObserver::kFrames;  // of earlier frames, as observations are
 
-constexpr std::size_t kOfClass = 30;  // returns that are held against planes
+constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns that are held against planes
 
 // Where nothing is in its place a sixth of the returns near planes are on them by chance, where all is six
 // times as many. Three is the middle of one and six as ratios go.
@@ -82,7 +75,7 @@ constexpr double kSpread = 0.2;  // m: what returns on planes spread over, and t
 // lies on planes of its map where a guess is wrong as well: in the simulator's berths at up to ten a frame.
 constexpr double kFewestAFrame = 12.0;
 constexpr int kFewestFrames = 2;
-constexpr int kMostFrames = 8;  // QuaySight::kOfClass returns are these
+constexpr int kMostFrames = 8;  // QuayObserver::kOfClass returns are these
 
 // A surface tells of a joint when it is moved across itself by half of all that it is moved.
 constexpr double kTells = 0.5;
@@ -91,17 +84,25 @@ constexpr double kSigmas = 3.0;
 // Of the returns near planes at least so many are off them by chance, at edges, m.
 constexpr double kLeastOff = 0.05;
 
-class Extent {
- public:
-  void add(const Eigen::Vector3d& p_W) {
-    const Point p = p_W.cast<float>();
-    box_ = box_ ? Box{box_->min.cwiseMin(p), box_->max.cwiseMax(p)} : Box{p, p};
+/// By class, of how many of the observations `counts` says yes.
+template <typename Counts>
+std::array<double, QuayMap::kClasses> count_by_class(const QuayObservations& observed, Counts counts) {
+  std::array<double, QuayMap::kClasses> number{};
+  for (const QuayObservation& o : observed.all) {
+    number.at(static_cast<std::size_t>(o.surface)) += counts(o) ? 1.0 : 0.0;
   }
-  [[nodiscard]] float length() const { return box_ ? (box_->max - box_->min).norm() : 0.0F; }
+  return number;
+}
 
- private:
-  std::optional<Box> box_;
-};
+template <typename Holds>
+bool any_class(Holds holds) {
+  for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
+    if (holds(surface)) {
+      return true;
+    }
+  }
+  return false;
+}
 
 /// Is the quay explained there no worse than in place? Roots of counts are compared, so that a class that is
 /// rare counts as one that is not; what is explained there falls short of what is explained here by no more
@@ -131,90 +132,126 @@ double most_consenting(std::vector<double>& offsets) {
 
 }  // namespace
 
-QuaySearch::MetOfEach QuaySearch::met(const QuaySighting& sighting, const Misplacement& seen) {
-  std::array<double, QuayMap::kClasses> near{};
-  std::array<double, QuayMap::kClasses> on{};
-  for (const QuayObservation& o : sighting.observations) {
-    const auto surface = static_cast<std::size_t>(o.surface);
-    near.at(surface) += o.age == 0 ? 1.0 : 0.0;
-    on.at(surface) += o.age == 0 && seen.agrees(o) ? 1.0 : 0.0;
-  }
+QuaySearch::MetOfEach QuaySearch::met(const QuayObservations& observed, const Misplacement& seen) {
+  const OfEach near = count_by_class(observed, [](const QuayObservation& o) { return o.age == 0; });
+  const OfEach on =
+      count_by_class(observed, [&](const QuayObservation& o) { return o.age == 0 && seen.agrees(o); });
   MetOfEach met{};
   for (std::size_t surface = 0; surface < met.size(); ++surface) {
     // Of k out of n that were drawn, each for s others, the estimate s k scatters by s sqrt(n p (1 - p)).
-    const double s = sighting.each_stands_for.at(surface);
+    const double s = observed.each_stands_for.at(surface);
     const double off = std::max(kLeastOff, near[surface] > 0.0 ? 1.0 - on[surface] / near[surface] : 0.0);
     met[surface] = {s * on[surface], s * off / 4.0};
   }
   return met;
 }
 
-std::array<bool, 3> QuaySearch::would_find(const QuaySighting& sighting, const Misplacement& seen,
+std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, const Misplacement& seen,
                                            const MachineConfig& machine, const MachineStand& stand) {
-  constexpr std::array kJoints = {JointName::travel, JointName::slew, JointName::luff};
-  std::array<Twist, 3> twists;
-  std::array<OfEach, 3> met{};
+  std::array<Twist, kAllJoints.size()> twists;
+  std::array<OfEach, kAllJoints.size()> met{};
   OfEach frames{};  // that there are observations of
-  std::array<std::array<Extent, QuayMap::kClasses>, 3> extents;
-  std::transform(kJoints.begin(), kJoints.end(), twists.begin(), [&](JointName joint) {
+  std::array<std::array<Box, QuayMap::kClasses>, kAllJoints.size()> boxes;
+  for (auto& of_joint : boxes) {
+    of_joint.fill(Box::none());
+  }
+  std::transform(kAllJoints.begin(), kAllJoints.end(), twists.begin(), [&](JointName joint) {
     return joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
   });
-  for (const QuayObservation& o : sighting.observations) {
+  for (const QuayObservation& o : observed.all) {
     const auto surface = static_cast<std::size_t>(o.surface);
     frames.at(surface) = std::max(frames.at(surface), 1.0 + o.age);
     if (!seen.agrees(o)) {
       continue;
     }
     for (std::size_t joint = 0; joint < twists.size(); ++joint) {
-      const Eigen::Vector3d moved = twists[joint].tail<3>() + twists[joint].head<3>().cross(o.p_W);
+      const Eigen::Vector3d moved = about_point(o.p_W, twists[joint]).tail<3>();
       if (std::abs(o.n_W.dot(moved)) > kTells * moved.norm()) {
-        met[joint].at(surface) += sighting.each_stands_for.at(surface);
+        met[joint].at(surface) += observed.each_stands_for.at(surface);
         if (o.age == 0) {
-          extents[joint].at(surface).add(o.p_W);  // as the frames of a guess are fewer
+          boxes[joint].at(surface).add(o.p_W.cast<float>());  // as the frames of a guess are fewer
         }
       }
     }
   }
   std::array<bool, 3> found{};
   for (std::size_t joint = 0; joint < found.size(); ++joint) {
-    for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
-      found[joint] = found[joint] ||
-                     (met[joint][surface] > 0.0 && met[joint][surface] >= kFewestAFrame * frames[surface] &&
-                      extents[joint][surface].length() > kLongestThing);
-    }
+    found[joint] = any_class([&](std::size_t surface) {
+      return met[joint][surface] > 0.0 && met[joint][surface] >= kFewestAFrame * frames[surface] &&
+             boxes[joint][surface].diagonal() > kLongestThing;
+    });
   }
   return found;
 }
 
-QuaySearch::Sight QuaySearch::sight_of(const QuayMap& map, const Cloud& looked_up_W, const Twist& off) {
-  const QuaySighting& sighting = sight_.look_elsewhere(map, looked_up_W, se3_exp(-off), kOfClass);
-  Sight sight{.seen = find_misplacement(sighting.observations)};
-  sight.met = met(sighting, sight.seen);
-  std::array<Extent, QuayMap::kClasses> extents;
-  std::array<std::vector<double>, QuayMap::kClasses> offsets;
-  for (const QuayObservation& o : sighting.observations) {
-    const auto surface = static_cast<std::size_t>(o.surface);
-    offsets.at(surface).push_back(o.offset);
+const QuayObservations& QuaySearch::observe(const QuayMap& map, const Cloud& returns_W, const Twist& off) {
+  const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
+  moved_W_.resize(returns_W.size());
+  std::transform(returns_W.begin(), returns_W.end(), moved_W_.begin(),
+                 [&](const Point& p) { return moves * p; });
+  return observer_.observe(map, moved_W_, kOfClass);
+}
+
+QuaySearch::Sight QuaySearch::sight_of(const QuayObservations& observed, const Twist& off) {
+  Sight sight{.seen = find_misplacement(observed.all)};
+  sight.met = met(observed, sight.seen);
+  sight.met_since = count_by_class(observed, [&](const QuayObservation& o) { return sight.seen.agrees(o); });
+  std::array<Box, QuayMap::kClasses> boxes;
+  boxes.fill(Box::none());
+  for (const QuayObservation& o : observed.all) {
     if (sight.seen.agrees(o)) {
-      sight.met_since.at(surface) += 1.0;
-      extents.at(surface).add(o.p_W);
+      boxes.at(static_cast<std::size_t>(o.surface)).add(o.p_W.cast<float>());
     }
   }
-  for (std::size_t surface = 0; surface < offsets.size(); ++surface) {
-    const double s = sighting.each_stands_for.at(surface);
-    const double consenting = most_consenting(offsets[surface]);
-    sight.met_since[surface] *= s;
-    sight.consenting[surface] =
-        consenting >= kConsenting * double(offsets[surface].size()) ? s * consenting : 0.0;
+  for (std::size_t surface = 0; surface < boxes.size(); ++surface) {
+    sight.met_since[surface] *= observed.each_stands_for[surface];
+    sight.extent[surface] = boxes[surface].diagonal();
   }
-  std::transform(extents.begin(), extents.end(), sight.extent.begin(),
-                 [](const Extent& extent) { return extent.length(); });
-  const Twist there = about(sight.seen.centre_W, off);
+  const Twist there = about_point(sight.seen.centre_W, off);
   sight.seen.twist += there;
   for (Misplacement::Measurement& measured : sight.seen.measured) {
     measured.offset += measured.direction.dot(there);
   }
   return sight;
+}
+
+/// So many of a class does a guess have to meet in its frames.
+double QuaySearch::enough(std::size_t surface) const {
+  return std::max(kFewestAFrame * frames_, kMuchBetter * in_place_.at(surface));
+}
+
+/// Whether it is, if all that lies near planes lies on them: to be asked first, since it costs little.
+bool QuaySearch::may_be_better(const QuayObservations& observed) const {
+  const OfEach near = count_by_class(observed, [](const QuayObservation&) { return true; });
+  return frames_ >= kFewestFrames && any_class([&](std::size_t surface) {
+           return near[surface] * observed.each_stands_for[surface] >= enough(surface);
+         });
+}
+
+bool QuaySearch::promises(const QuayObservations& observed) const {
+  std::array<std::vector<double>, QuayMap::kClasses> offsets;
+  for (const QuayObservation& o : observed.all) {
+    offsets.at(static_cast<std::size_t>(o.surface)).push_back(o.offset);
+  }
+  return any_class([&](std::size_t surface) {
+    const double consenting = most_consenting(offsets[surface]);
+    return consenting > 0.0 && consenting >= kConsenting * double(offsets[surface].size()) &&
+           observed.each_stands_for[surface] * consenting >=
+               std::max(kPromising, kMuchBetter * in_place_[surface]);
+  });
+}
+
+bool QuaySearch::is_better(const Sight& there) const {
+  return frames_ >= kFewestFrames && any_class([&](std::size_t surface) {
+           return there.met_since[surface] >= enough(surface) && there.extent[surface] > kLongestFace;
+         });
+}
+
+bool QuaySearch::loses(const Sight& there, const MetOfEach& in_place) {
+  return any_class([&](std::size_t surface) {
+    const double here = in_place[surface].returns;
+    return here >= kFewest && there.met[surface].returns < kLoses * here;
+  });
 }
 
 std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& looked_up_W,
@@ -226,25 +263,22 @@ std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& lo
     }
     ++asked_;
     frames_ = std::min(frames_ + 1, kMostFrames);
-    Sight there = sight_of(map, looked_up_W, twist_of(guess_number(guess_), machine, stand));
-    bool better = false;
-    bool promising = false;
-    bool worse = false;
     for (std::size_t surface = 0; surface < in_place_.size(); ++surface) {
       in_place_[surface] = kKept * in_place_[surface] + in_place[surface].returns;
-      const double here = in_place_[surface];
-      better = better || (frames_ >= kFewestFrames &&
-                          there.met_since[surface] >= std::max(kFewestAFrame * frames_, kMuchBetter * here) &&
-                          there.extent[surface] > kLongestFace);
-      promising = promising || there.consenting[surface] >= std::max(kPromising, kMuchBetter * here);
-      const double now = in_place[surface].returns;
-      worse = worse || (now >= kFewest && there.met[surface].returns < kLoses * now);
     }
-    if (better && !worse) {
-      return std::move(there.seen);
-    }
-    if (promising && !worse) {
-      return std::nullopt;  // the next frame is asked as well
+    const Twist off = twist_of(guess_number(guess_), machine, stand);
+    const QuayObservations& observed = observe(map, looked_up_W, off);
+    const bool promising = promises(observed);
+    if (promising || may_be_better(observed)) {
+      Sight there = sight_of(observed, off);
+      if (!loses(there, in_place)) {
+        if (is_better(there)) {
+          return std::move(there.seen);
+        }
+        if (promising) {
+          return std::nullopt;  // the next frame is asked as well
+        }
+      }
     }
     asked_ = 0;
   }
@@ -256,7 +290,7 @@ void QuaySearch::go_on() {
   guess_ = (guess_ + 1) % kGuesses;
   asked_ = 0;
   in_place_.fill(0.0);
-  sight_.forget();
+  observer_.forget();
 }
 
 std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Cloud& looked_up_W,
@@ -265,8 +299,8 @@ std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Clo
                                                    double amount) {
   go_on();  // what has been observed is of a guess
   const Twist off = amount * joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  Sight there = sight_of(map, looked_up_W, off);
-  sight_.forget();
+  Sight there = sight_of(observe(map, looked_up_W, off), off);
+  observer_.forget();
   return no_worse(there.met, in_place) ? std::optional(std::move(there.seen)) : std::nullopt;
 }
 

@@ -57,12 +57,11 @@ std::vector<QuayMap::Plane> tile_by_tile(std::vector<QuayMap::Plane> planes) {
 }
 
 QuayMap::Tile tile_around(std::span<const QuayMap::Plane> planes, std::size_t first) {
-  Box box{planes.front().centre_W, planes.front().centre_W};
+  Box box = Box::none();
   for (const QuayMap::Plane& plane : planes) {
-    box.min = box.min.cwiseMin(plane.centre_W);
-    box.max = box.max.cwiseMax(plane.centre_W);
+    box.add(plane.centre_W);
   }
-  return {(box.min + box.max) / 2.0F, (box.max - box.min).norm() / 2.0F, static_cast<std::uint32_t>(first),
+  return {(box.min + box.max) / 2.0F, box.diagonal() / 2.0F, static_cast<std::uint32_t>(first),
           static_cast<std::uint32_t>(planes.size())};
 }
 

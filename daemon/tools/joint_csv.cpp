@@ -10,7 +10,7 @@ std::string joint_csv_line(const TrackResult& r) {
   std::string line;
   append_field(line, r.frame);
   append_field(line, to_ns(r.time));
-  for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+  for (const JointName joint : kAllJoints) {
     const JointDoubt& doubt = r.joint_doubts.at(static_cast<std::size_t>(joint));
     if (std::isfinite(doubt.hidden)) {
       const double unit = joint == JointName::travel ? 1.0 : degrees(1.0);

@@ -35,7 +35,7 @@ const Eigen::Vector3d kQuay{10.0, -10.0, 1.0};
 TEST(MachineWear, AJointsTwistIsTheDerivativeOfTheBoomsPose) {
   const MachineStand stand = stand_at(kWorking);
   constexpr double kStep = 1e-6;
-  for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+  for (const JointName joint : kAllJoints) {
     Joints more = kWorking;
     (joint == JointName::travel ? more.d_x : joint == JointName::slew ? more.theta_r : more.theta_p) += kStep;
     const Pose E = misplaced(more, kWorking);
@@ -72,7 +72,7 @@ TEST(MachineDoubt, WearWithinTheClassAccusesNobodyWhateverItsSigns) {
 
 TEST(MachineDoubt, AJointThatReadsMoreThanWearExplainsIsAccusedByNameAndAmount) {
   const MachineStand stand = stand_at(kWorking);
-  for (const JointName joint : {JointName::travel, JointName::slew, JointName::luff}) {
+  for (const JointName joint : kAllJoints) {
     const Twist unit = joint_twist(quay_machine(), stand, joint, kQuay);
     const double hidden = doubt_machine(quay_machine(), stand, measured(Twist::Zero(), kQuay))
                               .joints.at(std::size_t(joint))
