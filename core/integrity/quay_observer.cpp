@@ -11,10 +11,10 @@ constexpr std::array kRarestFirst = {SurfaceClass::transverse, SurfaceClass::lon
 
 }  // namespace
 
-const QuayObservations& QuayObserver::observe(const QuayMap& map, const Cloud& returns_W,
+const QuayObservations& QuayObserver::observe(const QuayMap& map, const Cloud& returns_W, double each,
                                               const OfClass& most) {
   ++frame_;
-  choose(map, returns_W, most);
+  choose(map, returns_W, each, most);
   nearest_.resize(chosen_W_.size());
   map.tree().nearest(chosen_W_, kGate, nearest_);
   for (std::size_t i = 0; i < chosen_W_.size(); ++i) {
@@ -47,7 +47,7 @@ void QuayObserver::forget() {
 }
 
 /// A return that may be of several classes is of the rarest.
-void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, const OfClass& most) {
+void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, double each, const OfClass& most) {
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
@@ -70,7 +70,7 @@ void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, const OfCl
       chosen_W_.push_back(of_class[i]);
     }
     const std::size_t taken = chosen_W_.size() - before;
-    observations_.each_stands_for[surface] = taken > 0 ? double(of_class.size()) / double(taken) : 1.0;
+    observations_.each_stands_for[surface] = taken > 0 ? each * double(of_class.size()) / double(taken) : 1.0;
   }
 }
 

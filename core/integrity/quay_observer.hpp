@@ -40,9 +40,9 @@ class QuayObserver {
   static constexpr float kGate = QuayMap::kGate;
   using OfClass = std::array<std::size_t, QuayMap::kClasses>;
 
-  /// Shows it the returns of a frame, of which at most so many that may be of each class are held against
-  /// planes: evenly, others each frame. The answer lives until the next call.
-  [[nodiscard]] const QuayObservations& observe(const QuayMap& map, const Cloud& returns_W,
+  /// Shows it returns of a frame, each of which stands for `each`; at most so many that may be of each class
+  /// are held against planes: evenly, others each frame. The answer lives until the next call.
+  [[nodiscard]] const QuayObservations& observe(const QuayMap& map, const Cloud& returns_W, double each,
                                                 const OfClass& most);
   /// Of the quay's top, by all of the returns.
   [[nodiscard]] const QuayObservations& observe(const QuayPlane& top, const Cloud& returns_W);
@@ -51,7 +51,7 @@ class QuayObserver {
   void forget();
 
  private:
-  void choose(const QuayMap& map, const Cloud& returns_W, const OfClass& most);
+  void choose(const QuayMap& map, const Cloud& returns_W, double each, const OfClass& most);
   void keep(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);
   const QuayObservations& gather();
 

@@ -61,10 +61,9 @@ constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns that ar
 // Where nothing is in its place a sixth of the returns near planes are on them by chance, where all is six
 // times as many. Three is the middle of one and six as ratios go.
 constexpr double kMuchBetter = 3.0;
-// Of each class a true guess explains as much as can be, and the scatter of a sample of 30 is a tenth of it.
-// Of fewer returns in place than these a loss may be chance.
+// Of each class a true guess explains as much as can be; what it falls short by more than chance of this
+// share of what is explained in place is a loss.
 constexpr double kLoses = 0.7;
-constexpr double kFewest = 13.0;
 // Too few to place the machine by, offsets tell nevertheless that there may be more to it: these and half of
 // all agree with each other.
 constexpr double kPromising = 3.0;
@@ -76,6 +75,10 @@ constexpr double kSpread = 0.2;  // m: what returns on planes spread over, and t
 constexpr double kFewestAFrame = 12.0;
 constexpr int kFewestFrames = 2;
 constexpr int kMostFrames = 8;  // QuayObserver::kOfClass returns are these
+
+// What the newest frame meets of a surface is so much larger than what can be moved where it is sure that a
+// guess would meet enough of it: as a row of lorries to one of them.
+constexpr float kSurely = QuaySearch::kLongestThing / QuaySearch::kLongestFace;
 
 // A surface tells of a joint when it is moved across itself by half of all that it is moved.
 constexpr double kTells = 0.5;
@@ -117,6 +120,27 @@ bool no_worse(const QuaySearch::MetOfEach& there, const QuaySearch::MetOfEach& i
   return more > -kSigmas * std::sqrt(variance);
 }
 
+/// How far apart the lowest and the highest are of eight in ten of them, m.
+float height(Cloud points_W) {
+  const auto at = [&](std::size_t rank) {
+    const auto nth = points_W.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(points_W.begin(), nth, points_W.end(),
+                     [](const Point& a, const Point& b) { return a.z() < b.z(); });
+    return nth->z();
+  };
+  return points_W.empty() ? 0.0F : at(points_W.size() * 9 / 10) - at(points_W.size() / 10);
+}
+
+/// By a factor of `margin` at least.
+bool too_large_to_be_moved(const Cloud& surface_W, float margin = 1.0F) {
+  Box box = Box::none();
+  for (const Point& p : surface_W) {
+    box.add(p);
+  }
+  return box.diagonal() > margin * QuaySearch::kLongestFace ||
+         height(surface_W) > margin * QuaySearch::kTallestVehicle;
+}
+
 /// The most offsets that lie within kSpread of each other.
 double most_consenting(std::vector<double>& offsets) {
   std::sort(offsets.begin(), offsets.end());
@@ -151,10 +175,8 @@ std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, con
   std::array<Twist, kAllJoints.size()> twists;
   std::array<OfEach, kAllJoints.size()> met{};
   OfEach frames{};  // that there are observations of
-  std::array<std::array<Box, QuayMap::kClasses>, kAllJoints.size()> boxes;
-  for (auto& of_joint : boxes) {
-    of_joint.fill(Box::none());
-  }
+  std::array<std::array<Cloud, QuayMap::kClasses>, kAllJoints.size()>
+      newest_W;  // as a guess's frames are few
   std::transform(kAllJoints.begin(), kAllJoints.end(), twists.begin(), [&](JointName joint) {
     return joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
   });
@@ -169,7 +191,7 @@ std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, con
       if (std::abs(o.n_W.dot(moved)) > kTells * moved.norm()) {
         met[joint].at(surface) += observed.each_stands_for.at(surface);
         if (o.age == 0) {
-          boxes[joint].at(surface).add(o.p_W.cast<float>());  // as the frames of a guess are fewer
+          newest_W[joint].at(surface).push_back(o.p_W.cast<float>());
         }
       }
     }
@@ -178,7 +200,7 @@ std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, con
   for (std::size_t joint = 0; joint < found.size(); ++joint) {
     found[joint] = any_class([&](std::size_t surface) {
       return met[joint][surface] > 0.0 && met[joint][surface] >= kFewestAFrame * frames[surface] &&
-             boxes[joint][surface].diagonal() > kLongestThing;
+             too_large_to_be_moved(newest_W[joint][surface], kSurely);
     });
   }
   return found;
@@ -186,26 +208,28 @@ std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, con
 
 const QuayObservations& QuaySearch::observe(const QuayMap& map, const Cloud& returns_W, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
-  moved_W_.resize(returns_W.size());
-  std::transform(returns_W.begin(), returns_W.end(), moved_W_.begin(),
-                 [&](const Point& p) { return moves * p; });
-  return observer_.observe(map, moved_W_, kOfClass);
+  // All of them, or a thousand that lie evenly among them.
+  const std::size_t asked = QuaySight::counted(returns_W.size());
+  moved_W_.resize(asked);
+  for (std::size_t i = 0; i < asked; ++i) {
+    moved_W_[i] = moves * returns_W[i * returns_W.size() / asked];
+  }
+  return observer_.observe(map, moved_W_, 1.0, kOfClass);
 }
 
 QuaySearch::Sight QuaySearch::sight_of(const QuayObservations& observed, const Twist& off) {
   Sight sight{.seen = find_misplacement(observed.all)};
   sight.met = met(observed, sight.seen);
   sight.met_since = count_by_class(observed, [&](const QuayObservation& o) { return sight.seen.agrees(o); });
-  std::array<Box, QuayMap::kClasses> boxes;
-  boxes.fill(Box::none());
+  std::array<Cloud, QuayMap::kClasses> agreeing_W;
   for (const QuayObservation& o : observed.all) {
     if (sight.seen.agrees(o)) {
-      boxes.at(static_cast<std::size_t>(o.surface)).add(o.p_W.cast<float>());
+      agreeing_W.at(static_cast<std::size_t>(o.surface)).push_back(o.p_W.cast<float>());
     }
   }
-  for (std::size_t surface = 0; surface < boxes.size(); ++surface) {
+  for (std::size_t surface = 0; surface < agreeing_W.size(); ++surface) {
     sight.met_since[surface] *= observed.each_stands_for[surface];
-    sight.extent[surface] = boxes[surface].diagonal();
+    sight.fixed[surface] = too_large_to_be_moved(agreeing_W[surface]);
   }
   const Twist there = about_point(sight.seen.centre_W, off);
   sight.seen.twist += there;
@@ -243,18 +267,20 @@ bool QuaySearch::promises(const QuayObservations& observed) const {
 
 bool QuaySearch::is_better(const Sight& there) const {
   return frames_ >= kFewestFrames && any_class([&](std::size_t surface) {
-           return there.met_since[surface] >= enough(surface) && there.extent[surface] > kLongestFace;
+           return there.met_since[surface] >= enough(surface) && there.fixed[surface];
          });
 }
 
 bool QuaySearch::loses(const Sight& there, const MetOfEach& in_place) {
   return any_class([&](std::size_t surface) {
-    const double here = in_place[surface].returns;
-    return here >= kFewest && there.met[surface].returns < kLoses * here;
+    const Met& here = in_place[surface];
+    const Met& now = there.met[surface];
+    return std::sqrt(now.returns) < std::sqrt(kLoses * here.returns) -
+                                        kSigmas * std::sqrt(now.variance_of_root + here.variance_of_root);
   });
 }
 
-std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& looked_up_W,
+std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& returns_W,
                                              const MachineConfig& machine, const MachineStand& stand,
                                              const MetOfEach& in_place) {
   for (int i = 0; i < kGuessesAFrame; ++i) {
@@ -267,7 +293,7 @@ std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& lo
       in_place_[surface] = kKept * in_place_[surface] + in_place[surface].returns;
     }
     const Twist off = twist_of(guess_number(guess_), machine, stand);
-    const QuayObservations& observed = observe(map, looked_up_W, off);
+    const QuayObservations& observed = observe(map, returns_W, off);
     const bool promising = promises(observed);
     if (promising || may_be_better(observed)) {
       Sight there = sight_of(observed, off);
@@ -293,13 +319,13 @@ void QuaySearch::go_on() {
   observer_.forget();
 }
 
-std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Cloud& looked_up_W,
+std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Cloud& returns_W,
                                                    const MachineConfig& machine, const MachineStand& stand,
                                                    const MetOfEach& in_place, JointName joint,
                                                    double amount) {
   go_on();  // what has been observed is of a guess
   const Twist off = amount * joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  Sight there = sight_of(observe(map, looked_up_W, off), off);
+  Sight there = sight_of(observe(map, returns_W, off), off);
   observer_.forget();
   return no_worse(there.met, in_place) ? std::optional(std::move(there.seen)) : std::nullopt;
 }

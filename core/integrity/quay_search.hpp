@@ -4,10 +4,10 @@
 // metre finds little near the planes of the map that it moves: nothing, or by chance a wall that looks like
 // another. Guesses are tried in its stead, two a frame: were this joint off by that much, or the mount turned
 // so far, which of the scan's returns would lie on planes? A guess is better when the returns of one class of
-// surfaces that it explains are many, spread farther than any face that can be moved is long, and a multiple
-// of those that are explained where the machine is said to be, and no other class loses by it. One that is
-// promising is asked of the next frames too, until what they show together is enough. A round of guesses
-// takes two seconds at 10 Hz.
+// surfaces that it explains are many, spread farther than any face that can be moved is long or tall, and a
+// multiple of those that are explained where the machine is said to be, and no other class loses by it. One
+// that is promising is asked of the next frames too, until what they show together is enough. A round of
+// guesses takes two seconds at 10 Hz.
 //
 // Frame W; metres, radians. Thread rule: one owner. Cost: 0.1 ms a frame where it is asked.
 #pragma once
@@ -19,6 +19,7 @@
 #include "core/integrity/machine_wear.hpp"
 #include "core/integrity/misplacement.hpp"
 #include "core/integrity/quay_observer.hpp"
+#include "core/integrity/quay_sight.hpp"
 
 namespace hulltrack {
 
@@ -30,8 +31,10 @@ class QuaySearch {
   /// What can stand before a wall and be as flat is one face of such a thing: of the side of a
   /// semi-trailer, 13.6 by 4 m, corners are no farther apart than this. m
   static constexpr float kLongestFace = 15.0F;
+  /// And nothing on wheels is taller: where roads have a limit it is 4 to 4.95 m. m
+  static constexpr float kTallestVehicle = 5.0F;
 
-  /// How many of the returns that are asked lie on planes of one class.
+  /// How many of the returns that are asked, or of a thousand of them, lie on planes of one class.
   struct Met {
     double returns = 0.0;
     double variance_of_root = 0.0;  // of the root of it, since only a sample of them is held against planes
@@ -46,16 +49,16 @@ class QuaySearch {
                                                       const Misplacement& seen, const MachineConfig& machine,
                                                       const MachineStand& stand);
 
-  /// The next guesses; where the quay then lies if one is better. `looked_up_W`: the returns that are asked,
-  /// those of `in_place`.
-  [[nodiscard]] std::optional<Misplacement> look(const QuayMap& map, const Cloud& looked_up_W,
+  /// The next guesses; where the quay then lies if one is better. `returns_W`: those of `in_place`, of which
+  /// a thousand are asked.
+  [[nodiscard]] std::optional<Misplacement> look(const QuayMap& map, const Cloud& returns_W,
                                                  const MachineConfig& machine, const MachineStand& stand,
                                                  const MetOfEach& in_place);
   /// Stays with the guess that was better.
   void stay() { asked_ = 1; }
 
   /// Where the quay lies were the joint off by `amount` (m, rad), if that explains the scan no worse.
-  [[nodiscard]] std::optional<Misplacement> look_there(const QuayMap& map, const Cloud& looked_up_W,
+  [[nodiscard]] std::optional<Misplacement> look_there(const QuayMap& map, const Cloud& returns_W,
                                                        const MachineConfig& machine,
                                                        const MachineStand& stand, const MetOfEach& in_place,
                                                        JointName joint, double amount);
@@ -66,10 +69,10 @@ class QuaySearch {
  private:
   using OfEach = std::array<double, QuayMap::kClasses>;
   struct Sight {
-    Misplacement seen;                              // about where the machine is said to be
-    MetOfEach met{};                                // in the newest frame
-    OfEach met_since{};                             // and in those before
-    std::array<float, QuayMap::kClasses> extent{};  // of what is met, m
+    Misplacement seen;                            // about where the machine is said to be
+    MetOfEach met{};                              // in the newest frame
+    OfEach met_since{};                           // and in those before
+    std::array<bool, QuayMap::kClasses> fixed{};  // whether what is met is too large to be moved
   };
   /// `off`: how the sensor is guessed to be off, about the origin of W. With what was observed before until
   /// observer_ forgets.
