@@ -52,7 +52,6 @@ Guess guess_number(std::size_t number) {
   return {guess.suspect, number % 2 == 0 ? guess.off : -guess.off};
 }
 
-constexpr int kGuessesAFrame = 2;
 constexpr int kFramesOfAGuess = 6;
 constexpr double kKept = 1.0 - 1.0 / QuayObserver::kFrames;  // of earlier frames, as observations are
 
@@ -65,7 +64,7 @@ constexpr double kMuchBetter = 3.0;
 // share of what is explained in place is a loss.
 constexpr double kLoses = 0.7;
 // Too few to place the machine by, offsets tell nevertheless that there may be more to it: these and half of
-// all agree with each other.
+// all agree with each other; so many a frame, a quarter of what is enough.
 constexpr double kPromising = 3.0;
 constexpr double kConsenting = 0.5;
 constexpr double kSpread = 0.2;  // m: what returns on planes spread over, and the turn of a joint besides
@@ -118,6 +117,15 @@ bool no_worse(const QuaySearch::MetOfEach& there, const QuaySearch::MetOfEach& i
     variance += there[surface].variance_of_root + in_place[surface].variance_of_root;
   }
   return more > -kSigmas * std::sqrt(variance);
+}
+
+/// Is less of some class met there than in place, by more than chance?
+bool loses_a_class(const QuaySearch::MetOfEach& there, const QuaySearch::MetOfEach& in_place) {
+  return any_class([&](std::size_t surface) {
+    const double variance = there[surface].variance_of_root + in_place[surface].variance_of_root;
+    return std::sqrt(there[surface].returns) <
+           std::sqrt(kLoses * in_place[surface].returns) - kSigmas * std::sqrt(variance);
+  });
 }
 
 /// How far apart the lowest and the highest are of eight in ten of them, m.
@@ -206,7 +214,8 @@ std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, con
   return found;
 }
 
-const QuayObservations& QuaySearch::observe(const QuayMap& map, const Cloud& returns_W, const Twist& off) {
+const QuayObservations& QuaySearch::observe(QuayObserver& observer, const QuayMap& map,
+                                            const Cloud& returns_W, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   // All of them, or a thousand that lie evenly among them.
   const std::size_t asked = QuaySight::counted(returns_W.size());
@@ -214,7 +223,7 @@ const QuayObservations& QuaySearch::observe(const QuayMap& map, const Cloud& ret
   for (std::size_t i = 0; i < asked; ++i) {
     moved_W_[i] = moves * returns_W[i * returns_W.size() / asked];
   }
-  return observer_.observe(map, moved_W_, 1.0, kOfClass);
+  return observer.observe(map, moved_W_, 1.0, kOfClass);
 }
 
 QuaySearch::Sight QuaySearch::sight_of(const QuayObservations& observed, const Twist& off) {
@@ -239,20 +248,36 @@ QuaySearch::Sight QuaySearch::sight_of(const QuayObservations& observed, const T
   return sight;
 }
 
+void QuaySearch::Inquiry::begin(std::size_t another) {
+  guess = another;
+  asked = 0;
+  frames = 0;
+  in_place.fill(0.0);
+  observer.forget();
+}
+
+void QuaySearch::Inquiry::note(const MetOfEach& met_in_place) {
+  ++asked;
+  frames = std::min(frames + 1, kMostFrames);
+  for (std::size_t surface = 0; surface < in_place.size(); ++surface) {
+    in_place[surface] = kKept * in_place[surface] + met_in_place[surface].returns;
+  }
+}
+
 /// So many of a class does a guess have to meet in its frames.
-double QuaySearch::enough(std::size_t surface) const {
-  return std::max(kFewestAFrame * frames_, kMuchBetter * in_place_.at(surface));
+double QuaySearch::Inquiry::enough(std::size_t surface) const {
+  return std::max(kFewestAFrame * frames, kMuchBetter * in_place.at(surface));
 }
 
 /// Whether it is, if all that lies near planes lies on them: to be asked first, since it costs little.
-bool QuaySearch::may_be_better(const QuayObservations& observed) const {
+bool QuaySearch::Inquiry::may_be_better(const QuayObservations& observed) const {
   const OfEach near = count_by_class(observed, [](const QuayObservation&) { return true; });
-  return frames_ >= kFewestFrames && any_class([&](std::size_t surface) {
+  return frames >= kFewestFrames && any_class([&](std::size_t surface) {
            return near[surface] * observed.each_stands_for[surface] >= enough(surface);
          });
 }
 
-bool QuaySearch::promises(const QuayObservations& observed) const {
+bool QuaySearch::Inquiry::promises(const QuayObservations& observed) const {
   std::array<std::vector<double>, QuayMap::kClasses> offsets;
   for (const QuayObservation& o : observed.all) {
     offsets.at(static_cast<std::size_t>(o.surface)).push_back(o.offset);
@@ -261,78 +286,60 @@ bool QuaySearch::promises(const QuayObservations& observed) const {
     const double consenting = most_consenting(offsets[surface]);
     return consenting > 0.0 && consenting >= kConsenting * double(offsets[surface].size()) &&
            observed.each_stands_for[surface] * consenting >=
-               std::max(kPromising, kMuchBetter * in_place_[surface]);
+               std::max(kPromising * frames, kMuchBetter * in_place[surface]);
   });
 }
 
-bool QuaySearch::is_better(const Sight& there) const {
-  return frames_ >= kFewestFrames && any_class([&](std::size_t surface) {
+bool QuaySearch::Inquiry::is_better(const Sight& there) const {
+  return frames >= kFewestFrames && any_class([&](std::size_t surface) {
            return there.met_since[surface] >= enough(surface) && there.fixed[surface];
          });
-}
-
-bool QuaySearch::loses(const Sight& there, const MetOfEach& in_place) {
-  return any_class([&](std::size_t surface) {
-    const Met& here = in_place[surface];
-    const Met& now = there.met[surface];
-    return std::sqrt(now.returns) < std::sqrt(kLoses * here.returns) -
-                                        kSigmas * std::sqrt(now.variance_of_root + here.variance_of_root);
-  });
 }
 
 std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& returns_W,
                                              const MachineConfig& machine, const MachineStand& stand,
                                              const MetOfEach& in_place) {
-  for (int i = 0; i < kGuessesAFrame; ++i) {
-    if (asked_ == 0 || asked_ >= kFramesOfAGuess) {
-      go_on();
+  for (std::size_t i = 0; i < inquiries_.size(); ++i) {
+    Inquiry& inquiry = inquiries_[i];
+    if (inquiry.asked == 0 || inquiry.asked >= kFramesOfAGuess) {
+      inquiry.begin(next_guess_);
+      next_guess_ = (next_guess_ + 1) % kGuesses;
     }
-    ++asked_;
-    frames_ = std::min(frames_ + 1, kMostFrames);
-    for (std::size_t surface = 0; surface < in_place_.size(); ++surface) {
-      in_place_[surface] = kKept * in_place_[surface] + in_place[surface].returns;
-    }
-    const Twist off = twist_of(guess_number(guess_), machine, stand);
-    const QuayObservations& observed = observe(map, returns_W, off);
-    const bool promising = promises(observed);
-    if (promising || may_be_better(observed)) {
+    inquiry.note(in_place);
+    const Twist off = twist_of(guess_number(inquiry.guess), machine, stand);
+    const QuayObservations& observed = observe(inquiry.observer, map, returns_W, off);
+    const bool promising = inquiry.promises(observed);
+    bool loses = true;
+    if (promising || inquiry.may_be_better(observed)) {
       Sight there = sight_of(observed, off);
-      if (!loses(there, in_place)) {
-        if (is_better(there)) {
-          return std::move(there.seen);
-        }
-        if (promising) {
-          return std::nullopt;  // the next frame is asked as well
-        }
+      loses = loses_a_class(there.met, in_place);
+      if (!loses && inquiry.is_better(there)) {
+        better_ = i;
+        return std::move(there.seen);
       }
     }
-    asked_ = 0;
+    if (!promising || loses) {
+      inquiry.asked = 0;  // another one in the next frame
+    }
   }
   return std::nullopt;
-}
-
-void QuaySearch::go_on() {
-  frames_ = 0;
-  guess_ = (guess_ + 1) % kGuesses;
-  asked_ = 0;
-  in_place_.fill(0.0);
-  observer_.forget();
 }
 
 std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Cloud& returns_W,
                                                    const MachineConfig& machine, const MachineStand& stand,
                                                    const MetOfEach& in_place, JointName joint,
                                                    double amount) {
-  go_on();  // what has been observed is of a guess
   const Twist off = amount * joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  Sight there = sight_of(observe(map, returns_W, off), off);
-  observer_.forget();
+  there_.forget();
+  Sight there = sight_of(observe(there_, map, returns_W, off), off);
   return no_worse(there.met, in_place) ? std::optional(std::move(there.seen)) : std::nullopt;
 }
 
 void QuaySearch::forget() {
-  go_on();
-  guess_ = 0;
+  next_guess_ = 0;
+  for (Inquiry& inquiry : inquiries_) {
+    inquiry.asked = 0;
+  }
 }
 
 }  // namespace hulltrack

@@ -54,8 +54,8 @@ class QuaySearch {
   [[nodiscard]] std::optional<Misplacement> look(const QuayMap& map, const Cloud& returns_W,
                                                  const MachineConfig& machine, const MachineStand& stand,
                                                  const MetOfEach& in_place);
-  /// Stays with the guess that was better.
-  void stay() { asked_ = 1; }
+  /// Asks the guess that was better of the next frames too.
+  void stay() { inquiries_.at(better_).asked = 1; }
 
   /// Where the quay lies were the joint off by `amount` (m, rad), if that explains the scan no worse.
   [[nodiscard]] std::optional<Misplacement> look_there(const QuayMap& map, const Cloud& returns_W,
@@ -74,23 +74,32 @@ class QuaySearch {
     OfEach met_since{};                           // and in those before
     std::array<bool, QuayMap::kClasses> fixed{};  // whether what is met is too large to be moved
   };
-  /// `off`: how the sensor is guessed to be off, about the origin of W. With what was observed before until
-  /// observer_ forgets.
-  [[nodiscard]] const QuayObservations& observe(const QuayMap& map, const Cloud& returns_W, const Twist& off);
-  [[nodiscard]] static Sight sight_of(const QuayObservations& observed, const Twist& off);
-  [[nodiscard]] double enough(std::size_t surface) const;
-  [[nodiscard]] bool may_be_better(const QuayObservations& observed) const;
-  [[nodiscard]] bool promises(const QuayObservations& observed) const;
-  [[nodiscard]] bool is_better(const Sight& there) const;
-  [[nodiscard]] static bool loses(const Sight& there, const MetOfEach& in_place);
-  void go_on();
+  /// What is asked of one guess at a time, for as long as it is promising.
+  struct Inquiry {
+    QuayObserver observer;
+    std::size_t guess = 0;
+    int asked = 0;      // frames
+    int frames = 0;     // that observer remembers of it
+    OfEach in_place{};  // what these met where the machine is said to be
 
-  QuayObserver observer_;
-  Cloud moved_W_;  // scratch
-  std::size_t guess_ = 0;
-  int asked_ = 0;      // frames of which the guess has been asked
-  int frames_ = 0;     // that observer_ remembers of it
-  OfEach in_place_{};  // what these met where the machine is said to be
+    void begin(std::size_t another);
+    void note(const MetOfEach& met_in_place);
+    [[nodiscard]] double enough(std::size_t surface) const;
+    [[nodiscard]] bool may_be_better(const QuayObservations& observed) const;
+    [[nodiscard]] bool promises(const QuayObservations& observed) const;
+    [[nodiscard]] bool is_better(const Sight& there) const;
+  };
+  /// `off`: how the sensor is guessed to be off, about the origin of W. With what was observed before until
+  /// the observer forgets.
+  [[nodiscard]] const QuayObservations& observe(QuayObserver& observer, const QuayMap& map,
+                                                const Cloud& returns_W, const Twist& off);
+  [[nodiscard]] static Sight sight_of(const QuayObservations& observed, const Twist& off);
+
+  std::array<Inquiry, 2> inquiries_;
+  std::size_t next_guess_ = 0;
+  std::size_t better_ = 0;  // the inquiry that found the last one
+  QuayObserver there_;      // of one frame
+  Cloud moved_W_;           // scratch
 };
 
 }  // namespace hulltrack
