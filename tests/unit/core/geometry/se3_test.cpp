@@ -81,5 +81,14 @@ TEST(RotationAngle, IsExactNearPi) {
   }
 }
 
+TEST_F(RandomTwists, ASmallMotionIsTheSameAboutAnyPoint) {
+  const Twist about_origin = 1e-6 * draw(1.0);
+  const Eigen::Vector3d away(3.0, -40.0, 12.0);
+  const Twist about_there = about_point(away, about_origin);
+  const Eigen::Vector3d p(10.0, 20.0, 30.0);
+  const Eigen::Vector3d moved = about_origin.tail<3>() + about_origin.head<3>().cross(p);
+  EXPECT_TRUE(moved.isApprox(about_there.tail<3>() + about_there.head<3>().cross(p - away)));
+}
+
 }  // namespace
 }  // namespace hulltrack

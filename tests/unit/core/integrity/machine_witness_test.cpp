@@ -119,6 +119,19 @@ TEST(MachineWitness, AJointThatIsOffByMoreThanAGateIsFoundWhereTheQuayIsMet) {
   }
 }
 
+TEST(MachineWitness, AShedsEndThatIsTallerThanAnyVehicleShowsALargeError) {
+  const std::vector<std::size_t> with_shed = {0, 2, 4};  // 6 m of it across the rails
+  const auto map = std::make_shared<const QuayMap>(quay_cloud(with_shed));
+  EXPECT_TRUE(Frames(map).run(10, {}, with_shed).joints[0].finds_large);
+  for (const double off : {-1.2, 1.2, 3.1}) {
+    Frames frames(map);
+    const MachineFinding finding = frames.run(30, {off, 0.0, 0.0}, with_shed);
+    EXPECT_EQ(finding.faults, fault::plc_value) << off;
+    EXPECT_NE(finding.reason.find("travel"), std::string::npos) << off << ": " << finding.reason;
+    EXPECT_EQ(frames.run(20, {}, with_shed).faults, 0) << off;
+  }
+}
+
 TEST(MachineWitness, AnErrorThatGrowsBeyondTheGateStaysCharged) {
   Frames frames(std::make_shared<const QuayMap>(quay_cloud(kAllSurfaces)));
   for (int i = 0; i < 150; ++i) {
