@@ -108,10 +108,11 @@ class WhenItShows(unittest.TestCase):
         self.assertEqual(shows.beyond_the_table(attack(("luff",)), plc_, false, at(0.0), t_ns).sum(), 0)
 
     def test_a_large_error_shows_where_it_would_be_found_and_a_small_one_anywhere(self):
-        for amount, shown in ((0.3, True), (1.0, False)):
+        for amount, far, shown in ((0.3, False, True), (0.5, False, False), (0.5, True, True), (1.0, False, False),
+                                   (3.0, True, True)):
             false = plc(10, d_x=lambda s, amount=amount: amount)
-            owed = self.owed(attack(("travel",)), plc(10), false, seen(plc(10), far=False))
-            self.assertEqual(bool(owed.any()), shown)
+            owed = self.owed(attack(("travel",)), plc(10), false, seen(plc(10), far=far))
+            self.assertEqual(bool(owed.any()), shown, (amount, far))
 
     def test_a_mount_shows_while_the_quay_shows_all_joints(self):
         self.assertAlmostEqual(self.shown(attack(()), plc(10)), 0.05, delta=0.11)
