@@ -193,6 +193,9 @@ MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplac
 /// of there then. Where all axes are confirmed no other place is tried.
 void MachineWitness::weigh_other_places(const QuayObservations& observed, const MachineStand& stand,
                                         bool confirmed, const MachineCharge* asked, Verdict& verdict) {
+  if (confirmed && asked == nullptr) {
+    return;
+  }
   const QuaySearch::MetOfEach in_place = QuaySearch::met(observed, seen_);
   const auto charge = [&](const Misplacement& there, const MachineDoubt& doubt) {
     verdict = {.known = true, .charge = charge_by(doubt, there), .doubt = doubt};

@@ -2,12 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace hulltrack {
 namespace {
 
 // Within this of a plane a ray has met it, m.
 constexpr float kOnPlane = 0.15F;
+
+/// Index of the next one from `from` on, or the size. Most of a scan is the ship: memchr passes over her at
+/// once.
+std::size_t next_of(ReturnOf wanted, const std::vector<ReturnOf>& of, std::size_t from) {
+  static_assert(sizeof(ReturnOf) == 1);
+  const void* found =
+      from < of.size() ? std::memchr(&of[from], static_cast<int>(wanted), of.size() - from) : nullptr;
+  return found != nullptr ? static_cast<std::size_t>(static_cast<const ReturnOf*>(found) - of.data())
+                          : of.size();
+}
 
 bool in_reach(const QuayMap::Tile& tile, const Point& sensor_W) {
   const float reach = QuaySight::kFarthest + tile.radius;
@@ -67,8 +78,9 @@ void QuaySight::begin_frame(const FilteredScan& scan, std::size_t most) {
   const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
   std::size_t number = turn_ % stride;
   for (std::size_t lidar = 0; lidar < scan.of.size(); ++lidar) {
-    for (std::size_t i = 0; i < scan.of[lidar].size(); ++i) {
-      if (scan.of[lidar][i] == wanted && ++number >= stride) {
+    const std::vector<ReturnOf>& of = scan.of[lidar];
+    for (std::size_t i = next_of(wanted, of, 0); i < of.size(); i = next_of(wanted, of, i + 1)) {
+      if (++number >= stride) {
         returns_W_.push_back(scan.returns_W[lidar][i]);
         number = 0;
       }
