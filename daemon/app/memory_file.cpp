@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 namespace hulltrack {
@@ -47,8 +49,12 @@ MemoryFile& MemoryFile::operator=(MemoryFile&& other) noexcept {
 std::filesystem::path MemoryFile::path() const { return "/proc/self/fd/" + std::to_string(fd_); }
 
 void MemoryFile::seal() {
-  if (fcntl(fd_, F_ADD_SEALS, kSeals) != 0) {
-    fail("cannot seal a file in memory");
+  const auto give_up = std::chrono::steady_clock::now() + kLongestBusy;
+  while (fcntl(fd_, F_ADD_SEALS, kSeals) != 0) {
+    if (errno != EBUSY || std::chrono::steady_clock::now() > give_up) {
+      fail("cannot seal a file in memory");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 

@@ -6,6 +6,7 @@
 // Cost: a copy of the bytes.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <string_view>
@@ -29,8 +30,10 @@ class MemoryFile {
   [[nodiscard]] std::filesystem::path path() const;
 
   /// From now on neither content nor size can change, through whatever descriptor. Throws when somebody may
-  /// still write to it.
+  /// still write to it: after kLongestBusy, since the kernel itself may hold a page of a write a moment ago.
+  /// It waits 150 ms for that to end (EBUSY in fcntl(2)), which on a busy computer has been too short.
   void seal();
+  static constexpr std::chrono::seconds kLongestBusy{2};
 
  private:
   int fd_;

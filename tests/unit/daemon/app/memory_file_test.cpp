@@ -2,11 +2,15 @@
 #include "daemon/app/memory_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 #include "tests/support/temp_folder.hpp"
 
@@ -31,6 +35,39 @@ TEST(MemoryFile, CanNoLongerChangeOnceItIsSealed) {
   EXPECT_NE(ftruncate(other, 100), 0);
   close(other);
   EXPECT_EQ(MappedBytes(file).bytes(), "abc");
+}
+
+/// Somebody who may write to it.
+class Writer {
+ public:
+  explicit Writer(const MemoryFile& file)
+      : begin_(mmap(nullptr, 3, PROT_READ | PROT_WRITE, MAP_SHARED, file.fd(), 0)) {}
+  ~Writer() { munmap(begin_, 3); }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+ private:
+  void* begin_;
+};
+
+TEST(MemoryFile, IsSealedOnceNobodyWritesToItAnyMore) {
+  MemoryFile file("test");
+  write_all(file.fd(), "abc");
+  auto writer = std::make_unique<Writer>(file);
+  std::thread leaves([&writer] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    writer.reset();
+  });
+  file.seal();
+  leaves.join();
+  EXPECT_EQ(MappedBytes(file).bytes(), "abc");
+}
+
+TEST(MemoryFile, IsNotSealedWhileSomebodyMayWriteToIt) {
+  MemoryFile file("test");
+  write_all(file.fd(), "abc");
+  const Writer stays(file);
+  EXPECT_THROW(file.seal(), std::system_error);
 }
 
 TEST(MemoryFile, IsNotLookedIntoBeforeItIsSealed) {
