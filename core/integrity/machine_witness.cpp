@@ -9,7 +9,7 @@
 namespace hulltrack {
 namespace {
 
-constexpr int kChargesNeeded = 3;
+constexpr int kNeeded = 3;  // frames in a row, to charge and to acquit: one may be wrong about the quay
 
 // As long as observations are kept at 10 Hz, and half as long again for a boom that swings out.
 constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
@@ -93,10 +93,13 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     }
   }
   note_rest(time, stand, verdict);
-  charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : verdict.known ? 0 : charges_in_a_row_;
-  if (verdict.charge && charges_in_a_row_ >= kChargesNeeded) {
+  if (verdict.known) {
+    charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : 0;
+    clean_in_a_row_ = verdict.charge ? 0 : clean_in_a_row_ + 1;
+  }
+  if (verdict.charge && charges_in_a_row_ >= kNeeded) {
     charges_.add(*verdict.charge);
-  } else if (!verdict.charge && verdict.known) {
+  } else if (verdict.known && clean_in_a_row_ >= kNeeded) {
     acquit(verdict, asked);
   }
   return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
@@ -289,6 +292,7 @@ void MachineWitness::forget_sight() {
   }
   planes_ = {};
   charges_in_a_row_ = 0;
+  clean_in_a_row_ = 0;
 }
 
 void MachineWitness::forget() {

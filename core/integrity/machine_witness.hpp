@@ -1,9 +1,9 @@
 // Does the quay contradict the machine? One frame's sight of it, and what stands since earlier ones.
 //
-// A machine beyond its class takes health until a sight of the quay that would have shown it again does not,
-// or a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not; a frame that
-// sees none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.35
-// ms a frame, whatever the map's size.
+// A machine beyond its class takes health until sights of the quay that would have shown it again do not, or
+// a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not; a frame that sees
+// none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.35 ms a
+// frame, whatever the map's size.
 #pragma once
 
 #include <deque>
@@ -91,6 +91,7 @@ class MachineWitness {
   std::optional<MeasurementTime> standing_since_;
   std::optional<Misplacement> at_rest_;
   int charges_in_a_row_ = 0;
+  int clean_in_a_row_ = 0;
   MachineCharges charges_;
 };
 

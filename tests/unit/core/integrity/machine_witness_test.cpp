@@ -50,6 +50,8 @@ class Frames {
     return finding;
   }
   MachineWitness& witness() { return witness_; }
+  /// So many frames are not seen.
+  void pass(int frames) { frame_ += frames; }
   /// What is in no map stands on the quay from now on.
   void show(const QuaySurface& surface) { besides_.push_back(surface); }
 
@@ -179,6 +181,15 @@ TEST(MachineWitness, AChargeStandsUntilASightThatWouldHaveShownItDoesNot) {
   frames.run(20, {0.3, 0.0, 0.0});
   EXPECT_NE(frames.run(20, {0.3, 0.0, 0.0}, {0}).faults, 0) << "of the top alone nobody sees a wrong travel";
   EXPECT_EQ(frames.run(20, {}).faults, 0);
+}
+
+TEST(MachineWitness, AnAcquittalNeedsAsManySightsAsACharge) {
+  Frames frames;
+  frames.run(20, {0.3, 0.0, 0.0});
+  frames.pass(10);  // what was seen is forgotten, what was charged is not
+  EXPECT_NE(frames.run(1, {}).faults, 0) << "one frame may be wrong";
+  EXPECT_NE(frames.run(1, {}).faults, 0);
+  EXPECT_EQ(frames.run(1, {}).faults, 0);
 }
 
 TEST(MachineWitness, AJointIsNotAcquittedBecauseAnotherOneIsCharged) {
