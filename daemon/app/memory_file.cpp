@@ -48,11 +48,19 @@ MemoryFile& MemoryFile::operator=(MemoryFile&& other) noexcept {
 
 std::filesystem::path MemoryFile::path() const { return "/proc/self/fd/" + std::to_string(fd_); }
 
+bool MemoryFile::try_seal() {
+  const bool sealed = fcntl(fd_, F_ADD_SEALS, kSeals) == 0;
+  if (!sealed && errno != EBUSY) {
+    fail("cannot seal a file in memory");
+  }
+  return sealed;
+}
+
 void MemoryFile::seal() {
   const auto give_up = std::chrono::steady_clock::now() + kLongestBusy;
-  while (fcntl(fd_, F_ADD_SEALS, kSeals) != 0) {
-    if (errno != EBUSY || std::chrono::steady_clock::now() > give_up) {
-      fail("cannot seal a file in memory");
+  while (!try_seal()) {
+    if (std::chrono::steady_clock::now() > give_up) {
+      throw std::system_error(EBUSY, std::generic_category(), "cannot seal a file in memory");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

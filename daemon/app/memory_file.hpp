@@ -33,6 +33,8 @@ class MemoryFile {
   /// still write to it: after kLongestBusy, since the kernel itself may hold a page of a write a moment ago.
   /// It waits 150 ms for that to end (EBUSY in fcntl(2)), which on a busy computer has been too short.
   void seal();
+  /// The same for who has no time to wait: false while somebody may still write to it, after 150 ms at most.
+  [[nodiscard]] bool try_seal();
   static constexpr std::chrono::seconds kLongestBusy{2};
 
  private:

@@ -86,7 +86,8 @@ void Preparer::step(SteadyTime now) {
       if (reader_->configuration_read() && !configuration_) {
         read_configuration();
       }
-      if (reader_->ended()) {
+      const bool awaited = reader_->configuration_read() && !configuration_ && !reader_->failure();
+      if (reader_->ended() && !awaited) {
         reader_ended();
       }
     } else if (making_.valid() && making_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
@@ -98,7 +99,9 @@ void Preparer::step(SteadyTime now) {
 }
 
 void Preparer::read_configuration() {
-  reader_->configuration().seal();
+  if (!reader_->configuration().try_seal()) {
+    return;  // in the next step: whoever calls feeds a watchdog
+  }
   const MappedBytes text(reader_->configuration());
   configuration_ = parse_config(text.bytes(), config_file_, lidar_models());
 }
