@@ -51,6 +51,10 @@ struct SphericalGrid {
   /// Row of a direction `z` high over `planar` (>= 0).
   [[nodiscard]] static int row(float planar, float z) { return whole(fast_atan2(z, planar), 90.0F, kRows); }
   [[nodiscard]] static int column(float x, float y) { return whole(fast_atan2(y, x), 180.0F, kColumns); }
+  /// Half the work of cell(), for who asks for the row first.
+  [[nodiscard]] static int row(const Point& p) {
+    return row(std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z());
+  }
 
   /// The cell with this index().
   [[nodiscard]] static Cell at(std::size_t index) {
@@ -58,7 +62,7 @@ struct SphericalGrid {
   }
 
   [[nodiscard]] static Cell cell(const Point& p) {
-    return {row(std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z()), column(p.x(), p.y())};
+    return {row(p), column(p.x(), p.y())};
   }
 
  private:

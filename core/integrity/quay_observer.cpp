@@ -6,8 +6,23 @@
 namespace hulltrack {
 namespace {
 
-constexpr std::array kRarestFirst = {SurfaceClass::transverse, SurfaceClass::longitudinal,
-                                     SurfaceClass::other, SurfaceClass::horizontal};
+/// The rarest of the classes of `named`, by its bits.
+constexpr SurfaceClass rarest_of(std::size_t named) {
+  SurfaceClass rarest = SurfaceClass::horizontal;
+  for (const SurfaceClass surface :
+       {SurfaceClass::other, SurfaceClass::longitudinal, SurfaceClass::transverse}) {
+    rarest = (named >> static_cast<unsigned>(surface) & 1U) != 0 ? surface : rarest;
+  }
+  return rarest;
+}
+
+constexpr auto kRarestOf = [] {
+  std::array<SurfaceClass, std::size_t{1} << QuayMap::kClasses> rarest{};
+  for (std::size_t named = 0; named < rarest.size(); ++named) {
+    rarest.at(named) = rarest_of(named);
+  }
+  return rarest;
+}();
 
 }  // namespace
 
@@ -52,12 +67,8 @@ void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, double eac
     of_class.clear();
   }
   for (const Point& p : returns_W) {
-    const SurfaceCells::Classes classes = map.classes_near(p);
-    for (const SurfaceClass surface : kRarestFirst) {
-      if ((classes >> static_cast<unsigned>(surface) & 1U) != 0) {
-        candidates_W_[static_cast<std::size_t>(surface)].push_back(p);
-        break;
-      }
+    if (const SurfaceCells::Classes near = map.classes_near(p); near != 0) {
+      candidates_W_[static_cast<std::size_t>(kRarestOf[near])].push_back(p);
     }
   }
   chosen_W_.clear();

@@ -6,6 +6,7 @@
 // of returns that it is shown, whatever the map's size.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -38,6 +39,10 @@ class QuayObserver {
   static constexpr std::uint32_t kFrames = 10;
   static constexpr std::size_t kOfClass = 100;
   static constexpr float kGate = QuayMap::kGate;
+  /// What is told of the quay by counting is of a frame of so many returns, or of fewer where there are
+  /// fewer.
+  static constexpr std::size_t kThousand = 1000;
+  [[nodiscard]] static std::size_t counted(std::size_t returns) { return std::min(returns, kThousand); }
   using OfClass = std::array<std::size_t, QuayMap::kClasses>;
 
   /// Shows it returns of a frame, each of which stands for `each`; at most so many that may be of each class

@@ -218,7 +218,7 @@ const QuayObservations& QuaySearch::observe(QuayObserver& observer, const QuayMa
                                             const Cloud& returns_W, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   // All of them, or a thousand that lie evenly among them.
-  const std::size_t asked = QuaySight::counted(returns_W.size());
+  const std::size_t asked = QuayObserver::counted(returns_W.size());
   moved_W_.resize(asked);
   for (std::size_t i = 0; i < asked; ++i) {
     moved_W_[i] = moves * returns_W[i * returns_W.size() / asked];

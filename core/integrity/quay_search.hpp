@@ -19,7 +19,6 @@
 #include "core/integrity/machine_wear.hpp"
 #include "core/integrity/misplacement.hpp"
 #include "core/integrity/quay_observer.hpp"
-#include "core/integrity/quay_sight.hpp"
 
 namespace hulltrack {
 

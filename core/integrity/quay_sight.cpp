@@ -35,7 +35,8 @@ bool beneath_or_above(const Box& area_W, const Point& p) {
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
                                         std::span<const ScanView> views) {
   begin_frame(scan, kLookedUp);
-  const double each = double(counted(returns_W_.size())) / std::max(1.0, double(returns_W_.size()));
+  const double each =
+      double(QuayObserver::counted(returns_W_.size())) / std::max(1.0, double(returns_W_.size()));
   seen_.observed = &observer_.observe(map, returns_W_, each, kReturnsOf);
   for (const ScanView& view : views) {
     for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
@@ -104,9 +105,16 @@ void QuaySight::look_through(const QuayMap& map, std::size_t surface, const Scan
     for (; next < tile.count; next += stride) {
       const QuayMap::Plane& plane = map.planes()[tile.first + next];
       const Point p_L = view.seen(plane.centre_W);
-      const SphericalGrid::Cell cell = SphericalGrid::cell(p_L);
       const float range = p_L.norm();
-      if (range > kFarthest || !view.looks_at(cell) || view.hidden(cell, range)) {
+      if (range > kFarthest) {
+        continue;
+      }
+      const int row = SphericalGrid::row(p_L);
+      if (row < view.lowest_row() || row > view.highest_row()) {
+        continue;  // most planes are above or below what the lasers reach
+      }
+      const SphericalGrid::Cell cell{row, SphericalGrid::column(p_L.x(), p_L.y())};
+      if (!view.looks_at(cell) || view.hidden(cell, range)) {
         continue;
       }
       collect_rays(view, p_L, R_L_W * plane.normal_W, rays_);

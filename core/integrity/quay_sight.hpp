@@ -11,7 +11,6 @@
 // scan's size: kLookedUp returns and kProbes planes of each class a frame, others each frame.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -44,10 +43,6 @@ class QuaySight {
   /// are rare and hold what the top does not. All of them where a LiDAR of 16 lasers looks at a ship: where
   /// walls are few, a third of them leaves travel unseen that all of them hold to 0.17 m.
   static constexpr std::size_t kLookedUp = 3000;
-  /// What is told of the quay by counting is of a frame of so many returns, or of fewer where there are
-  /// fewer.
-  static constexpr std::size_t kThousand = 1000;
-  [[nodiscard]] static std::size_t counted(std::size_t returns) { return std::min(returns, kThousand); }
   static constexpr QuayObserver::OfClass kReturnsOf = {80, 80, 60, 40};
   static constexpr std::uint32_t kProbes = 300;  // a frame, class and LiDAR
   static constexpr float kFarthest = 60.0F;      // m from the sensor
