@@ -14,6 +14,12 @@
 
 namespace hulltrack {
 
+/// std::floor is a call on processors of before SSE 4.1, which the code is built for. |v| < 2^31.
+[[nodiscard]] inline int rounded_down(float v) {
+  const int towards_zero = static_cast<int>(v);
+  return towards_zero - (v < static_cast<float>(towards_zero) ? 1 : 0);
+}
+
 class BlockIndex {
  public:
   static constexpr int kFarthest = (1 << 20) - 1;

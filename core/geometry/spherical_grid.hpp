@@ -61,9 +61,7 @@ struct SphericalGrid {
     return {static_cast<int>(index / kColumns), static_cast<int>(index % kColumns)};
   }
 
-  [[nodiscard]] static Cell cell(const Point& p) {
-    return {row(p), column(p.x(), p.y())};
-  }
+  [[nodiscard]] static Cell cell(const Point& p) { return {row(p), column(p.x(), p.y())}; }
 
  private:
   /// Whole degrees from -`first` on, in 0 .. count - 1; 0 for NaN.

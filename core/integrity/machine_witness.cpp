@@ -82,14 +82,13 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   bool confirmed = false;
   const MachineCharge* asked = charges_.next_joint();
   if (map_ != nullptr) {
-    const std::array<bool, 3> finds_large =
-        QuaySearch::would_find(*sighting->observed, seen_, machine_, stand);
-    confirmed = verdict.known && !verdict.charge && seen_.holds_all() &&
-                std::all_of(finds_large.begin(), finds_large.end(), [](bool finds) { return finds; });
-    weigh_other_places(*sighting->observed, stand, confirmed, asked, verdict);
-    confirmed = confirmed && !verdict.charge;
-    for (std::size_t joint = 0; joint < finds_large.size(); ++joint) {
-      verdict.doubt.joints.at(joint).finds_large = finds_large.at(joint);
+    search_.see(*map_, sight_.returns_W(), *sighting->observed, machine_, stand, charges_.any());
+    weigh_other_places(stand, asked, verdict);
+    confirmed = verdict.known && !verdict.charge && seen_.holds_all();
+    for (const JointName joint : kAllJoints) {
+      const bool finds_large = search_.would_find(joint);
+      verdict.doubt.joints.at(static_cast<std::size_t>(joint)).finds_large = finds_large;
+      confirmed = confirmed && finds_large;
     }
   }
   note_rest(time, stand, verdict);
@@ -193,42 +192,43 @@ MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplac
 
 /// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
 /// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
-/// of there then. Where all axes are confirmed no other place is tried.
-void MachineWitness::weigh_other_places(const QuayObservations& observed, const MachineStand& stand,
-                                        bool confirmed, const MachineCharge* asked, Verdict& verdict) {
-  if (confirmed && asked == nullptr) {
-    return;
-  }
-  const QuaySearch::MetOfEach in_place = QuaySearch::met(observed, seen_);
+/// of there then.
+void MachineWitness::weigh_other_places(const MachineStand& stand, const MachineCharge* asked,
+                                        Verdict& verdict) {
   const auto charge = [&](const Misplacement& there, const MachineDoubt& doubt) {
     verdict = {.known = true, .charge = charge_by(doubt, there), .doubt = doubt};
   };
+  const auto elsewhere = search_.look(*map_, machine_);
   if (asked != nullptr) {
-    if (const auto there = search_.look_there(*map_, sight_.returns_W(), machine_, stand, in_place,
-                                              *asked->joint, asked->amount)) {
-      const MachineDoubt doubt = doubt_machine(machine_, stand, *there);
-      if (doubt.beyond_class) {
-        charge(*there, doubt);
-        return;
-      }
-      // Too little may be in view to tell: what was charged stands, beside what else this frame shows.
-      if (doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
-        verdict.charge = verdict.charge ? verdict.charge : *asked;
-        verdict.known = true;
-        return;
-      }
-    }
-  }
-  if (confirmed) {
-    return;
-  }
-  if (const auto elsewhere = search_.look(*map_, sight_.returns_W(), machine_, stand, in_place)) {
-    const MachineDoubt doubt = doubt_machine(machine_, stand, *elsewhere);
+    const QuaySearch::There there = search_.look_there(*map_, machine_, *asked->joint, asked->amount);
+    verdict.refutes_asked = there.refuted;
+    const MachineDoubt doubt = doubt_machine(machine_, stand, there.seen);
     if (doubt.beyond_class) {
-      search_.stay();
-      charge(*elsewhere, doubt);
+      charge(there.seen, doubt);
+      return;
+    }
+    // Too little may be in view to tell: then only what else this frame shows to be wrong counts.
+    if (!there.worse &&
+        doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
+      verdict.known = verdict.charge.has_value();
+      return;
     }
   }
+  if (elsewhere) {
+    const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere->seen);
+    if (doubt.beyond_class) {
+      charge(elsewhere->seen, doubt);
+    } else if (elsewhere->lasting && elsewhere->guess.joint && elsewhere->guess.beyond_wear &&
+               doubt.joints.at(static_cast<std::size_t>(*elsewhere->guess.joint)).hidden >=
+                   std::abs(elsewhere->guess.amount)) {
+      verdict = {.known = true, .charge = charge_by(elsewhere->guess, elsewhere->seen), .doubt = doubt};
+    }
+  }
+}
+
+/// Where no planes tell of the joint, the things that are met there do.
+MachineCharge MachineWitness::charge_by(const MachineGuess& guess, const Misplacement& seen) {
+  return {accusation(*guess.joint, guess.amount), guess.joint, guess.amount, seen.measured.size()};
 }
 
 /// A sight of the quay is of a machine that stands once all of its observations are.
@@ -247,7 +247,8 @@ void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, 
 /// Of what this frame would have shown, and does not. `asked`: the joint's charge that was held against it.
 void MachineWitness::acquit(const Verdict& verdict, const MachineCharge* asked) {
   if (asked != nullptr &&
-      verdict.doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden < std::abs(asked->amount)) {
+      (verdict.refutes_asked ||
+       verdict.doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden < std::abs(asked->amount))) {
     charges_.drop(asked->joint);
   }
   const MachineCharge* nameless = charges_.without_joint();

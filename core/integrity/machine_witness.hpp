@@ -57,6 +57,7 @@ class MachineWitness {
     bool known = false;
     std::optional<MachineCharge> charge;
     MachineDoubt doubt;
+    bool refutes_asked = false;  // the joint's charge that was held against it
   };
   [[nodiscard]] const QuaySighting* sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
                                                 const MachineStand& stand, bool on_trial);
@@ -65,8 +66,8 @@ class MachineWitness {
   void acquit(const Verdict& verdict, const MachineCharge* asked);
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
-  void weigh_other_places(const QuayObservations& observed, const MachineStand& stand, bool confirmed,
-                          const MachineCharge* asked, Verdict& verdict);
+  [[nodiscard]] static MachineCharge charge_by(const MachineGuess& guess, const Misplacement& seen);
+  void weigh_other_places(const MachineStand& stand, const MachineCharge* asked, Verdict& verdict);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();

@@ -26,10 +26,10 @@ constexpr auto kRarestOf = [] {
 
 }  // namespace
 
-const QuayObservations& QuayObserver::observe(const QuayMap& map, const Cloud& returns_W, double each,
+const QuayObservations& QuayObserver::observe(const QuayMap& map, const Cloud& returns_W,
                                               const OfClass& most) {
   ++frame_;
-  choose(map, returns_W, each, most);
+  choose(map, returns_W, most);
   nearest_.resize(chosen_W_.size());
   map.tree().nearest(chosen_W_, kGate, nearest_);
   for (std::size_t i = 0; i < chosen_W_.size(); ++i) {
@@ -62,7 +62,7 @@ void QuayObserver::forget() {
 }
 
 /// A return that may be of several classes is of the rarest.
-void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, double each, const OfClass& most) {
+void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, const OfClass& most) {
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
@@ -76,12 +76,9 @@ void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, double eac
     const Cloud& of_class = candidates_W_[surface];
     const std::size_t stride =
         std::max<std::size_t>(1, (of_class.size() + most[surface] - 1) / most[surface]);
-    const std::size_t before = chosen_W_.size();
     for (std::size_t i = frame_ % stride; i < of_class.size(); i += stride) {
       chosen_W_.push_back(of_class[i]);
     }
-    const std::size_t taken = chosen_W_.size() - before;
-    observations_.each_stands_for[surface] = taken > 0 ? each * double(of_class.size()) / double(taken) : 1.0;
   }
 }
 

@@ -6,7 +6,6 @@
 // of returns that it is shown, whatever the map's size.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -28,9 +27,6 @@ struct QuayObservation {
 
 struct QuayObservations {
   std::vector<QuayObservation> all;  // of the last frames
-  /// With a map: for how many returns of the newest frame that may be of the class each that was taken
-  /// stands.
-  std::array<double, QuayMap::kClasses> each_stands_for = {1.0, 1.0, 1.0, 1.0};
 };
 
 class QuayObserver {
@@ -39,15 +35,11 @@ class QuayObserver {
   static constexpr std::uint32_t kFrames = 10;
   static constexpr std::size_t kOfClass = 100;
   static constexpr float kGate = QuayMap::kGate;
-  /// What is told of the quay by counting is of a frame of so many returns, or of fewer where there are
-  /// fewer.
-  static constexpr std::size_t kThousand = 1000;
-  [[nodiscard]] static std::size_t counted(std::size_t returns) { return std::min(returns, kThousand); }
   using OfClass = std::array<std::size_t, QuayMap::kClasses>;
 
-  /// Shows it returns of a frame, each of which stands for `each`; at most so many that may be of each class
-  /// are held against planes: evenly, others each frame. The answer lives until the next call.
-  [[nodiscard]] const QuayObservations& observe(const QuayMap& map, const Cloud& returns_W, double each,
+  /// Shows it returns of a frame; at most so many that may be of each class are held against planes: evenly,
+  /// others each frame. The answer lives until the next call.
+  [[nodiscard]] const QuayObservations& observe(const QuayMap& map, const Cloud& returns_W,
                                                 const OfClass& most);
   /// Of the quay's top, by all of the returns.
   [[nodiscard]] const QuayObservations& observe(const QuayPlane& top, const Cloud& returns_W);
@@ -56,7 +48,7 @@ class QuayObserver {
   void forget();
 
  private:
-  void choose(const QuayMap& map, const Cloud& returns_W, double each, const OfClass& most);
+  void choose(const QuayMap& map, const Cloud& returns_W, const OfClass& most);
   void keep(SurfaceClass surface, const Point& return_W, const Eigen::Vector3d& n_W, double offset);
   const QuayObservations& gather();
 

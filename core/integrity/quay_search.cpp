@@ -2,344 +2,284 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
-#include "core/geometry/box.hpp"
 
 namespace hulltrack {
 namespace {
 
-/// What may be off: a joint, or the mount turned about an axis of W.
-enum class Suspect : std::uint8_t { travel, slew, luff, mount_x, mount_y, mount_z };
+constexpr std::size_t kGuessesAFrame = 8;
 
-struct Guess {
-  Suspect suspect;
-  double off;  // m, deg
-};
-
-/// About the origin of W.
-Twist twist_of(const Guess& guess, const MachineConfig& machine, const MachineStand& stand) {
-  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  if (guess.suspect > Suspect::luff) {
-    return radians(guess.off) * mount_twists(stand, origin).at(static_cast<std::size_t>(guess.suspect));
-  }
-  const auto joint = static_cast<JointName>(guess.suspect);
-  return (joint == JointName::travel ? guess.off : radians(guess.off)) *
-         joint_twist(machine, stand, joint, origin);
-}
-
-// Each reaches half a metre to both sides, as far as pairs do, at the levers of a boom (60 m for walls, 40 m
-// for the top). What is nearer than the nearest is seen without a guess; farther off, a slew is beyond
-// hull.max_yaw, a luff beyond hull.max_heel and max_trim, and of a travel the walls are seen through.
-constexpr Suspect kTravel = Suspect::travel;
-constexpr Suspect kSlew = Suspect::slew;
-constexpr Suspect kLuff = Suspect::luff;
-constexpr Suspect kMountX = Suspect::mount_x;
-constexpr Suspect kMountY = Suspect::mount_y;
-constexpr Suspect kMountZ = Suspect::mount_z;
-constexpr std::array<Guess, 19> kEitherWay = {{
-    {kTravel, 1.0}, {kSlew, 0.9},   {kLuff, 1.5},   {kTravel, 2.0}, {kSlew, 1.6},
-    {kLuff, 3.0},   {kTravel, 3.0}, {kSlew, 2.3},   {kLuff, 4.5},   {kTravel, 4.0},
-    {kSlew, 3.0},   {kTravel, 5.0}, {kSlew, 3.7},   {kMountX, 1.6}, {kMountX, 2.8},
-    {kMountY, 1.6}, {kMountY, 2.8}, {kMountZ, 1.6}, {kMountZ, 2.8},
-}};
-constexpr std::size_t kGuesses = 2 * kEitherWay.size();
-
-Guess guess_number(std::size_t number) {
-  const Guess& guess = kEitherWay.at(number / 2);
-  return {guess.suspect, number % 2 == 0 ? guess.off : -guess.off};
-}
-
-constexpr int kFramesOfAGuess = 6;
-constexpr double kKept = 1.0 - 1.0 / QuayObserver::kFrames;  // of earlier frames, as observations are
-
+// So many returns of a frame are looked at, evenly: of them all are asked that may tell of any joint, and a
+// few of those inside level surfaces.
+constexpr std::size_t kReturns = 1000;
+constexpr std::size_t kInsideLevel = 30;
+// First a part of the telling ones, evenly, and these few; the others of a guess that has not lost by then.
+constexpr std::size_t kFirst = 90;
 constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns that are held against planes
 
-// Where nothing is in its place a sixth of the returns near planes are on them by chance, where all is six
-// times as many. Three is the middle of one and six as ratios go.
-constexpr double kMuchBetter = 3.0;
-// Of each class a true guess explains as much as can be; what it falls short by more than chance of this
-// share of what is explained in place is a loss.
-constexpr double kLoses = 0.7;
-// Too few to place the machine by, offsets tell nevertheless that there may be more to it: these and half of
-// all agree with each other; so many a frame, a quarter of what is enough.
-constexpr double kPromising = 3.0;
-constexpr double kConsenting = 0.5;
-constexpr double kSpread = 0.2;  // m: what returns on planes spread over, and the turn of a joint besides
+// What a joint moves across its plane by less is held against that plane, give or take what wear moves, m.
+constexpr double kWithinGate = QuayMap::kGate - 0.2F;
+// An observation tells of a joint that moves it across itself by so much of all that it moves it: a top that
+// slopes does not tell of travel.
+constexpr double kTells = 0.25;
+constexpr std::size_t kFewestThatTell = 20;
 
-// So many returns a frame, of a thousand, in the mean over the frames of a guess. What stands about a quay
-// lies on planes of its map where a guess is wrong as well: in the simulator's berths at up to ten a frame.
-constexpr double kFewestAFrame = 12.0;
-constexpr int kFewestFrames = 2;
-constexpr int kMostFrames = 8;  // QuayObserver::kOfClass returns are these
+// Things that are nearer than this to each other may be one, m.
+constexpr float kPiece = 4.0F;
 
-// What the newest frame meets of a surface is so much larger than what can be moved where it is sure that a
-// guess would meet enough of it: as a row of lorries to one of them.
-constexpr float kSurely = QuaySearch::kLongestThing / QuaySearch::kLongestFace;
+// In 190 frames of ten berths of the simulator, with lorries, people, covers and a crane on the quay, no
+// wrong guess that gains eight returns of five things gains more than 1.2 times what it loses, and hardly one
+// as much; a right one gains 20 to 450, of 6 to 60 things, and loses a tenth of that, where little of the
+// quay is in view and where much is.
+constexpr std::size_t kFewestGained = 8;
+constexpr std::size_t kFewestPieces = 5;
+constexpr std::size_t kMuchBetter = 3;
+// Of the first part a guess that is right gains as much as it loses at least.
+constexpr std::size_t kFewestOfFirst = 2;
+// Once it was, these are enough for it to stay.
+constexpr std::size_t kFewestKept = 4;
+constexpr double kSigmas = 2.0;
 
-// A surface tells of a joint when it is moved across itself by half of all that it is moved.
-constexpr double kTells = 0.5;
-
-constexpr double kSigmas = 3.0;
-// Of the returns near planes at least so many are off them by chance, at edges, m.
-constexpr double kLeastOff = 0.05;
-
-/// By class, of how many of the observations `counts` says yes.
-template <typename Counts>
-std::array<double, QuayMap::kClasses> count_by_class(const QuayObservations& observed, Counts counts) {
-  std::array<double, QuayMap::kClasses> number{};
-  for (const QuayObservation& o : observed.all) {
-    number.at(static_cast<std::size_t>(o.surface)) += counts(o) ? 1.0 : 0.0;
+/// Calls take(value) for at most `most` of them, evenly, others each frame.
+template <typename Take>
+void take_evenly(std::size_t count, std::size_t most, std::uint32_t turn, Take take) {
+  const std::size_t stride = std::max<std::size_t>(1, (count + most - 1) / most);
+  for (std::size_t i = turn % stride; i < count; i += stride) {
+    take(i);
   }
-  return number;
 }
 
-template <typename Holds>
-bool any_class(Holds holds) {
-  for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
-    if (holds(surface)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Is the quay explained there no worse than in place? Roots of counts are compared, so that a class that is
-/// rare counts as one that is not; what is explained there falls short of what is explained here by no more
-/// than chance.
-bool no_worse(const QuaySearch::MetOfEach& there, const QuaySearch::MetOfEach& in_place) {
-  double more = 0.0;
-  double variance = 0.0;
-  for (std::size_t surface = 0; surface < there.size(); ++surface) {
-    more += std::sqrt(there[surface].returns) - std::sqrt(in_place[surface].returns);
-    variance += there[surface].variance_of_root + in_place[surface].variance_of_root;
-  }
-  return more > -kSigmas * std::sqrt(variance);
-}
-
-/// Is less of some class met there than in place, by more than chance?
-bool loses_a_class(const QuaySearch::MetOfEach& there, const QuaySearch::MetOfEach& in_place) {
-  return any_class([&](std::size_t surface) {
-    const double variance = there[surface].variance_of_root + in_place[surface].variance_of_root;
-    return std::sqrt(there[surface].returns) <
-           std::sqrt(kLoses * in_place[surface].returns) - kSigmas * std::sqrt(variance);
-  });
-}
-
-/// How far apart the lowest and the highest are of eight in ten of them, m.
-float height(Cloud points_W) {
+/// How far apart the lowest and the highest are of eight in ten of them.
+float spread(std::vector<float>& values) {
   const auto at = [&](std::size_t rank) {
-    const auto nth = points_W.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(points_W.begin(), nth, points_W.end(),
-                     [](const Point& a, const Point& b) { return a.z() < b.z(); });
-    return nth->z();
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
   };
-  return points_W.empty() ? 0.0F : at(points_W.size() * 9 / 10) - at(points_W.size() / 10);
+  return values.empty() ? 0.0F : at(values.size() * 9 / 10) - at(values.size() / 10);
 }
 
-/// By a factor of `margin` at least.
-bool too_large_to_be_moved(const Cloud& surface_W, float margin = 1.0F) {
-  Box box = Box::none();
-  for (const Point& p : surface_W) {
-    box.add(p);
-  }
-  return box.diagonal() > margin * QuaySearch::kLongestFace ||
-         height(surface_W) > margin * QuaySearch::kTallestVehicle;
-}
-
-/// The most offsets that lie within kSpread of each other.
-double most_consenting(std::vector<double>& offsets) {
-  std::sort(offsets.begin(), offsets.end());
-  std::size_t most = 0;
-  for (std::size_t first = 0, last = 0; last < offsets.size(); ++last) {
-    while (offsets[last] - offsets[first] > kSpread) {
-      ++first;
-    }
-    most = std::max(most, last - first + 1);
-  }
-  return double(most);
+std::uint64_t piece_of(const Point& p) {
+  constexpr int kBits = 21;
+  const auto place = [](float v) {
+    return static_cast<std::uint64_t>(rounded_down(v * (1.0F / kPiece))) & ((1U << kBits) - 1);
+  };
+  return (place(p.x()) << (2 * kBits)) | (place(p.y()) << kBits) | place(p.z());
 }
 
 }  // namespace
 
-QuaySearch::MetOfEach QuaySearch::met(const QuayObservations& observed, const Misplacement& seen) {
-  const OfEach near = count_by_class(observed, [](const QuayObservation& o) { return o.age == 0; });
-  const OfEach on =
-      count_by_class(observed, [&](const QuayObservation& o) { return o.age == 0 && seen.agrees(o); });
-  MetOfEach met{};
-  for (std::size_t surface = 0; surface < met.size(); ++surface) {
-    // Of k out of n that were drawn, each for s others, the estimate s k scatters by s sqrt(n p (1 - p)).
-    const double s = observed.each_stands_for.at(surface);
-    const double off = std::max(kLeastOff, near[surface] > 0.0 ? 1.0 - on[surface] / near[surface] : 0.0);
-    met[surface] = {s * on[surface], s * off / 4.0};
+void QuaySearch::see(const QuayMap& map, const Cloud& returns_W, const QuayObservations& observed,
+                     const MachineConfig& machine, const MachineStand& stand, bool closely) {
+  takes_ = kept_ || closely || !takes_;
+  if (!takes_) {
+    return;
   }
-  return met;
+  ++turn_;
+  returns_W_ = returns_W;
+  stand_ = stand;
+  note_planes(observed, machine);
+  const NearCells& things = map.things();
+  asked_.clear();
+  inside_level_W_.clear();
+  take_evenly(returns_W.size(), kReturns, turn_, [&](std::size_t i) {
+    const Point& p = returns_W[i];
+    const auto [near, inside_level] = things.at(p);
+    if (inside_level) {
+      inside_level_W_.push_back(p);
+    } else if (near || things.in_reach(p)) {  // else it can be neither gained nor lost
+      asked_.push_back({p, near});
+    }
+  });
+  first_ = 0;
+  const auto ask_first = [this](std::size_t i) { std::swap(asked_[first_++], asked_[i]); };
+  take_evenly(asked_.size(), kFirst, turn_, ask_first);
+  take_evenly(inside_level_W_.size(), kInsideLevel, turn_, [&](std::size_t i) {
+    asked_.push_back({inside_level_W_[i], true});
+    ask_first(asked_.size() - 1);
+  });
 }
 
-std::array<bool, 3> QuaySearch::would_find(const QuayObservations& observed, const Misplacement& seen,
-                                           const MachineConfig& machine, const MachineStand& stand) {
-  std::array<Twist, kAllJoints.size()> twists;
-  std::array<OfEach, kAllJoints.size()> met{};
-  OfEach frames{};  // that there are observations of
-  std::array<std::array<Cloud, QuayMap::kClasses>, kAllJoints.size()>
-      newest_W;  // as a guess's frames are few
-  std::transform(kAllJoints.begin(), kAllJoints.end(), twists.begin(), [&](JointName joint) {
-    return joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  });
-  for (const QuayObservation& o : observed.all) {
-    const auto surface = static_cast<std::size_t>(o.surface);
-    frames.at(surface) = std::max(frames.at(surface), 1.0 + o.age);
-    if (!seen.agrees(o)) {
-      continue;
+/// Of asked_, from `begin` to `end`, with what was counted before.
+void QuaySearch::count(const NearCells& things, const Eigen::Isometry3f& moves, std::size_t begin,
+                       std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const Point there_W = moves * asked_[i].p_W;
+    const bool near = things.at(there_W).near;
+    if (near && !asked_[i].near) {
+      tally_.gained.push_back(i);
+    } else if (!near && asked_[i].near && things.in_reach(there_W)) {
+      tally_.lost.push_back(i);
     }
-    for (std::size_t joint = 0; joint < twists.size(); ++joint) {
-      const Eigen::Vector3d moved = about_point(o.p_W, twists[joint]).tail<3>();
-      if (std::abs(o.n_W.dot(moved)) > kTells * moved.norm()) {
-        met[joint].at(surface) += observed.each_stands_for.at(surface);
-        if (o.age == 0) {
-          newest_W[joint].at(surface).push_back(o.p_W.cast<float>());
-        }
+  }
+}
+
+/// Counts all that is asked. `off`: how the sensor is guessed to be off, about the origin of W.
+void QuaySearch::tally(const QuayMap& map, const Twist& off) {
+  tally_.gained.clear();
+  tally_.lost.clear();
+  count(map.things(), Eigen::Isometry3f(se3_exp(-off).cast<float>()), 0, asked_.size());
+}
+
+/// Counts the first part, notes whether such an error of a joint would be found, and counts the rest where it
+/// is worth it.
+void QuaySearch::try_guess(const QuayMap& map, const MachineGuess& guess, const Twist& off) {
+  const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
+  tally_.gained.clear();
+  tally_.lost.clear();
+  count(map.things(), moves, 0, first_);
+  would_win_[next_] = guess.joint && (loses_as_much() || planes_show(guess));
+  if (tally_.gained.size() >= std::max(kFewestOfFirst, tally_.lost.size())) {
+    count(map.things(), moves, first_, asked_.size());
+  }
+}
+
+/// Whether what the first part loses is as much as a better guess has to gain.
+bool QuaySearch::loses_as_much() {
+  const double part = double(first_) / double(std::max<std::size_t>(1, asked_.size()));
+  return double(tally_.lost.size()) >= part * double(kFewestGained) &&
+         is_fixed(tally_.lost, kFewestPieces - 1);
+}
+
+/// Whether the error is so small that most of what was observed stays within the gate of its planes.
+bool QuaySearch::planes_show(const MachineGuess& guess) const {
+  return std::abs(guess.amount) <= shown_up_to_.at(static_cast<std::size_t>(*guess.joint));
+}
+
+void QuaySearch::note_planes(const QuayObservations& observed, const MachineConfig& machine) {
+  for (const JointName joint : kAllJoints) {
+    const Twist twist = joint_twist(machine, stand_, joint, Eigen::Vector3d::Zero());
+    across_.clear();
+    for (const QuayObservation& o : observed.all) {
+      const Eigen::Vector3d moved = about_point(o.p_W, twist).tail<3>();
+      if (const double across = std::abs(o.n_W.dot(moved)); across > kTells * moved.norm()) {
+        across_.push_back(across);
       }
     }
+    const auto middle = across_.begin() + static_cast<std::ptrdiff_t>(across_.size() / 2);
+    const bool tells = across_.size() >= kFewestThatTell;
+    if (tells) {
+      std::nth_element(across_.begin(), middle, across_.end());
+    }
+    shown_up_to_.at(static_cast<std::size_t>(joint)) = tells ? kWithinGate / *middle : 0.0;
   }
-  std::array<bool, 3> found{};
-  for (std::size_t joint = 0; joint < found.size(); ++joint) {
-    found[joint] = any_class([&](std::size_t surface) {
-      return met[joint][surface] > 0.0 && met[joint][surface] >= kFewestAFrame * frames[surface] &&
-             too_large_to_be_moved(newest_W[joint][surface], kSurely);
-    });
-  }
-  return found;
 }
 
-const QuayObservations& QuaySearch::observe(QuayObserver& observer, const QuayMap& map,
-                                            const Cloud& returns_W, const Twist& off) {
-  const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
-  // All of them, or a thousand that lie evenly among them.
-  const std::size_t asked = QuayObserver::counted(returns_W.size());
-  moved_W_.resize(asked);
-  for (std::size_t i = 0; i < asked; ++i) {
-    moved_W_[i] = moves * returns_W[i * returns_W.size() / asked];
+/// Whether these are of so many things, and too far apart, to be of something that can be moved.
+bool QuaySearch::is_fixed(const std::vector<std::size_t>& asked, std::size_t fewest_pieces) {
+  pieces_.clear();
+  for (const std::size_t i : asked) {
+    pieces_.push_back(piece_of(asked_[i].p_W));
   }
-  return observer.observe(map, moved_W_, 1.0, kOfClass);
+  std::sort(pieces_.begin(), pieces_.end());
+  if (static_cast<std::size_t>(std::unique(pieces_.begin(), pieces_.end()) - pieces_.begin()) <
+      fewest_pieces) {
+    return false;
+  }
+  std::array<float, 3> spreads{};
+  for (int axis = 0; axis < 3; ++axis) {
+    coordinates_.clear();
+    for (const std::size_t i : asked) {
+      coordinates_.push_back(asked_[i].p_W[axis]);
+    }
+    spreads.at(static_cast<std::size_t>(axis)) = spread(coordinates_);
+  }
+  return spreads[2] > kTallestVehicle || std::hypot(spreads[0], spreads[1], spreads[2]) > kLongestFace;
 }
 
-QuaySearch::Sight QuaySearch::sight_of(const QuayObservations& observed, const Twist& off) {
-  Sight sight{.seen = find_misplacement(observed.all)};
-  sight.met = met(observed, sight.seen);
-  sight.met_since = count_by_class(observed, [&](const QuayObservation& o) { return sight.seen.agrees(o); });
-  std::array<Cloud, QuayMap::kClasses> agreeing_W;
-  for (const QuayObservation& o : observed.all) {
-    if (sight.seen.agrees(o)) {
-      agreeing_W.at(static_cast<std::size_t>(o.surface)).push_back(o.p_W.cast<float>());
+bool QuaySearch::is_better() {
+  return tally_.gained.size() >= std::max(kFewestGained, kMuchBetter * tally_.lost.size()) &&
+         is_fixed(tally_.gained, kFewestPieces);
+}
+
+std::size_t QuaySearch::surplus() const {
+  return tally_.gained.size() - std::min(tally_.gained.size(), tally_.lost.size());
+}
+
+/// Keeps the best of the next ones, if it is better than the one that is kept.
+void QuaySearch::try_guesses(const QuayMap& map, const MachineConfig& machine, std::size_t surplus_of_kept) {
+  std::optional<std::size_t> best;
+  std::size_t most = surplus_of_kept;
+  for (std::size_t i = 0; i < kGuessesAFrame; ++i) {
+    const MachineGuess guess = machine_guess(next_);
+    try_guess(map, guess, twist_of(guess, machine, stand_));
+    if (is_better() && surplus() > most && next_ != kept_) {
+      best = next_;
+      most = surplus();
+    }
+    next_ = (next_ + 1) % kMachineGuesses;
+  }
+  if (best) {
+    kept_ = best;
+    frames_kept_ = 0;
+    of_kept_.forget();
+  }
+}
+
+std::optional<QuaySearch::Elsewhere> QuaySearch::look(const QuayMap& map, const MachineConfig& machine) {
+  std::size_t surplus_of_kept = 0;
+  if (kept_) {
+    tally(map, twist_of(machine_guess(*kept_), machine, stand_));
+    surplus_of_kept = surplus();
+    ++frames_kept_;
+    if (tally_.gained.size() < std::max(kFewestKept, kMuchBetter * tally_.lost.size())) {
+      kept_.reset();
+      surplus_of_kept = 0;
     }
   }
-  for (std::size_t surface = 0; surface < agreeing_W.size(); ++surface) {
-    sight.met_since[surface] *= observed.each_stands_for[surface];
-    sight.fixed[surface] = too_large_to_be_moved(agreeing_W[surface]);
+  try_guesses(map, machine, surplus_of_kept);
+  if (!kept_) {
+    return std::nullopt;
   }
-  const Twist there = about_point(sight.seen.centre_W, off);
-  sight.seen.twist += there;
-  for (Misplacement::Measurement& measured : sight.seen.measured) {
+  const MachineGuess guess = machine_guess(*kept_);
+  return Elsewhere{sight(of_kept_, map, twist_of(guess, machine, stand_)), guess, frames_kept_ >= kLasting};
+}
+
+QuaySearch::There QuaySearch::look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
+                                         double amount) {
+  const Twist off = twist_of({.joint = joint, .amount = amount}, machine, stand_);
+  tally(map, off);
+  const auto gained = double(tally_.gained.size());
+  const auto lost = double(tally_.lost.size());
+  if (lost > gained + kSigmas * std::sqrt(gained + lost + 1.0)) {
+    return {.worse = true, .refuted = is_fixed(tally_.lost, kFewestPieces), .seen = {}};
+  }
+  there_.forget();
+  return {.seen = sight(there_, map, off)};
+}
+
+/// By the planes near returns if `off` is how the sensor is off. With what was observed before until the
+/// observer forgets.
+Misplacement QuaySearch::sight(QuayObserver& observer, const QuayMap& map, const Twist& off) {
+  const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
+  moved_W_.resize(returns_W_.size());
+  std::transform(returns_W_.begin(), returns_W_.end(), moved_W_.begin(),
+                 [&](const Point& p) { return moves * p; });
+  Misplacement seen = find_misplacement(observer.observe(map, moved_W_, kOfClass).all);
+  const Twist there = about_point(seen.centre_W, off);
+  seen.twist += there;
+  for (Misplacement::Measurement& measured : seen.measured) {
     measured.offset += measured.direction.dot(there);
   }
-  return sight;
+  return seen;
 }
 
-void QuaySearch::Inquiry::begin(std::size_t another) {
-  guess = another;
-  asked = 0;
-  frames = 0;
-  in_place.fill(0.0);
-  observer.forget();
-}
-
-void QuaySearch::Inquiry::note(const MetOfEach& met_in_place) {
-  ++asked;
-  frames = std::min(frames + 1, kMostFrames);
-  for (std::size_t surface = 0; surface < in_place.size(); ++surface) {
-    in_place[surface] = kKept * in_place[surface] + met_in_place[surface].returns;
-  }
-}
-
-/// So many of a class does a guess have to meet in its frames.
-double QuaySearch::Inquiry::enough(std::size_t surface) const {
-  return std::max(kFewestAFrame * frames, kMuchBetter * in_place.at(surface));
-}
-
-/// Whether it is, if all that lies near planes lies on them: to be asked first, since it costs little.
-bool QuaySearch::Inquiry::may_be_better(const QuayObservations& observed) const {
-  const OfEach near = count_by_class(observed, [](const QuayObservation&) { return true; });
-  return frames >= kFewestFrames && any_class([&](std::size_t surface) {
-           return near[surface] * observed.each_stands_for[surface] >= enough(surface);
-         });
-}
-
-bool QuaySearch::Inquiry::promises(const QuayObservations& observed) const {
-  std::array<std::vector<double>, QuayMap::kClasses> offsets;
-  for (const QuayObservation& o : observed.all) {
-    offsets.at(static_cast<std::size_t>(o.surface)).push_back(o.offset);
-  }
-  return any_class([&](std::size_t surface) {
-    const double consenting = most_consenting(offsets[surface]);
-    return consenting > 0.0 && consenting >= kConsenting * double(offsets[surface].size()) &&
-           observed.each_stands_for[surface] * consenting >=
-               std::max(kPromising * frames, kMuchBetter * in_place[surface]);
-  });
-}
-
-bool QuaySearch::Inquiry::is_better(const Sight& there) const {
-  return frames >= kFewestFrames && any_class([&](std::size_t surface) {
-           return there.met_since[surface] >= enough(surface) && there.fixed[surface];
-         });
-}
-
-std::optional<Misplacement> QuaySearch::look(const QuayMap& map, const Cloud& returns_W,
-                                             const MachineConfig& machine, const MachineStand& stand,
-                                             const MetOfEach& in_place) {
-  for (std::size_t i = 0; i < inquiries_.size(); ++i) {
-    Inquiry& inquiry = inquiries_[i];
-    if (inquiry.asked == 0 || inquiry.asked >= kFramesOfAGuess) {
-      inquiry.begin(next_guess_);
-      next_guess_ = (next_guess_ + 1) % kGuesses;
-    }
-    inquiry.note(in_place);
-    const Twist off = twist_of(guess_number(inquiry.guess), machine, stand);
-    const QuayObservations& observed = observe(inquiry.observer, map, returns_W, off);
-    const bool promising = inquiry.promises(observed);
-    bool loses = true;
-    if (promising || inquiry.may_be_better(observed)) {
-      Sight there = sight_of(observed, off);
-      loses = loses_a_class(there.met, in_place);
-      if (!loses && inquiry.is_better(there)) {
-        better_ = i;
-        return std::move(there.seen);
-      }
-    }
-    if (!promising || loses) {
-      inquiry.asked = 0;  // another one in the next frame
+bool QuaySearch::would_find(JointName joint) const {
+  for (std::size_t guess = 0; guess < kMachineGuesses; ++guess) {
+    if (!would_win_[guess] && machine_guess(guess).joint == joint) {
+      return false;
     }
   }
-  return std::nullopt;
-}
-
-std::optional<Misplacement> QuaySearch::look_there(const QuayMap& map, const Cloud& returns_W,
-                                                   const MachineConfig& machine, const MachineStand& stand,
-                                                   const MetOfEach& in_place, JointName joint,
-                                                   double amount) {
-  const Twist off = amount * joint_twist(machine, stand, joint, Eigen::Vector3d::Zero());
-  there_.forget();
-  Sight there = sight_of(observe(there_, map, returns_W, off), off);
-  return no_worse(there.met, in_place) ? std::optional(std::move(there.seen)) : std::nullopt;
+  return true;
 }
 
 void QuaySearch::forget() {
-  next_guess_ = 0;
-  for (Inquiry& inquiry : inquiries_) {
-    inquiry.asked = 0;
-  }
+  takes_ = false;
+  returns_W_.clear();
+  asked_.clear();
+  first_ = 0;
+  next_ = 0;
+  would_win_.reset();
+  kept_.reset();
 }
 
 }  // namespace hulltrack

@@ -2,20 +2,27 @@
 //
 // What a return is farther off than QuayMap::kGate belongs to something else. So a joint that is off by a
 // metre finds little near the planes of the map that it moves: nothing, or by chance a wall that looks like
-// another. Guesses are tried in its stead, two a frame: were this joint off by that much, or the mount turned
-// so far, which of the scan's returns would lie on planes? A guess is better when the returns of one class of
-// surfaces that it explains are many, spread farther than any face that can be moved is long or tall, and a
-// multiple of those that are explained where the machine is said to be, and no other class loses by it. One
-// that is promising is asked of the next frames too, until what they show together is enough. A round of
-// guesses takes two seconds at 10 Hz.
+// another. Guesses are tried in its stead, some each frame: were this joint off by that much, or the mount
+// turned so far, which of the scan's returns would then lie where the map has something, and which no longer?
+// Bollards, cabinets, legs and edges tell as well as walls do; what lies inside large level surfaces tells of
+// luff and mount alone, so that only some of it is asked. Lorries and people, which are in no map, are met
+// nowhere but by chance, and then it is one of them. A guess is better when it gains many returns of many
+// things, farther apart than any face that can be moved is long or tall, and a multiple of those that it
+// loses. It is kept for as long as it is, and what the returns near planes say there is the answer: two kinds
+// of evidence. What every guess at a joint loses in turn is what the true one of them would gain: so the same
+// counts say whether a large error of the joint would be found.
 //
-// Frame W; metres, radians. Thread rule: one owner. Cost: 0.1 ms a frame where it is asked.
+// Frame W; metres, radians. Thread rule: one owner. Cost: 0.1 ms a frame, whatever the map's size; all
+// guesses take 1.7 s at 10 Hz.
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "core/integrity/machine_guess.hpp"
 #include "core/integrity/machine_wear.hpp"
 #include "core/integrity/misplacement.hpp"
 #include "core/integrity/quay_observer.hpp"
@@ -27,78 +34,81 @@ class QuaySearch {
   /// What leaves the quay in one piece is a lorry or a row of containers, 20 m long at most: what is spread
   /// farther than this does not move. m
   static constexpr float kLongestThing = 25.0F;
-  /// What can stand before a wall and be as flat is one face of such a thing: of the side of a
-  /// semi-trailer, 13.6 by 4 m, corners are no farther apart than this. m
+  /// What can stand where something of the map would be and look like it is one face of such a thing: of the
+  /// side of a semi-trailer, 13.6 by 4 m, corners are no farther apart than this. m
   static constexpr float kLongestFace = 15.0F;
   /// And nothing on wheels is taller: where roads have a limit it is 4 to 4.95 m. m
   static constexpr float kTallestVehicle = 5.0F;
 
-  /// How many of the returns that are asked, or of a thousand of them, lie on planes of one class.
-  struct Met {
-    double returns = 0.0;
-    double variance_of_root = 0.0;  // of the root of it, since only a sample of them is held against planes
+  /// A frame's returns beside the hull, what was observed of planes, and where the machine was said to be.
+  /// Takes those of every other frame, and of every one while a guess is kept, or to look `closely`.
+  void see(const QuayMap& map, const Cloud& returns_W, const QuayObservations& observed,
+           const MachineConfig& machine, const MachineStand& stand, bool closely);
+
+  struct Elsewhere {
+    Misplacement seen;  // by the planes near returns there
+    MachineGuess guess;
+    bool lasting = false;  // the guess has been better for half a second
   };
-  using MetOfEach = std::array<Met, QuayMap::kClasses>;
-  /// Of the newest frame, where the machine is said to be; `seen` is what the observations came to.
-  [[nodiscard]] static MetOfEach met(const QuayObservations& observed, const Misplacement& seen);
+  /// The next guesses, of the returns seen last; where the quay then lies if one is better.
+  [[nodiscard]] std::optional<Elsewhere> look(const QuayMap& map, const MachineConfig& machine);
+  struct There {
+    bool worse = false;    // than in place, by more than chance
+    bool refuted = false;  // besides, by what is too large to be moved
+    Misplacement seen;     // as above; nothing where it is worse
+  };
+  /// Where the quay lies were the joint off by `amount` (m, rad).
+  [[nodiscard]] There look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
+                                 double amount);
 
-  /// By JointName, whether an error of the joint that is too large for `seen` to show it would be found:
-  /// enough is met, far enough apart, of what such an error moves.
-  [[nodiscard]] static std::array<bool, 3> would_find(const QuayObservations& observed,
-                                                      const Misplacement& seen, const MachineConfig& machine,
-                                                      const MachineStand& stand);
+  /// Whether an error of the joint that is too large to be seen by offsets from planes would be found. False
+  /// until all guesses at it have been tried.
+  [[nodiscard]] bool would_find(JointName joint) const;
 
-  /// The next guesses; where the quay then lies if one is better. `returns_W`: those of `in_place`, of which
-  /// a thousand are asked.
-  [[nodiscard]] std::optional<Misplacement> look(const QuayMap& map, const Cloud& returns_W,
-                                                 const MachineConfig& machine, const MachineStand& stand,
-                                                 const MetOfEach& in_place);
-  /// Asks the guess that was better of the next frames too.
-  void stay() { inquiries_.at(better_).asked = 1; }
-
-  /// Where the quay lies were the joint off by `amount` (m, rad), if that explains the scan no worse.
-  [[nodiscard]] std::optional<Misplacement> look_there(const QuayMap& map, const Cloud& returns_W,
-                                                       const MachineConfig& machine,
-                                                       const MachineStand& stand, const MetOfEach& in_place,
-                                                       JointName joint, double amount);
-
-  /// Begins with the first guess again.
+  /// Begins with the first guess again, and knows of no returns.
   void forget();
 
  private:
-  using OfEach = std::array<double, QuayMap::kClasses>;
-  struct Sight {
-    Misplacement seen;                            // about where the machine is said to be
-    MetOfEach met{};                              // in the newest frame
-    OfEach met_since{};                           // and in those before
-    std::array<bool, QuayMap::kClasses> fixed{};  // whether what is met is too large to be moved
+  static constexpr int kLasting = 5;  // frames
+  struct Asked {
+    Point p_W;
+    bool near;  // something of the map, where the machine is said to be
   };
-  /// What is asked of one guess at a time, for as long as it is promising.
-  struct Inquiry {
-    QuayObserver observer;
-    std::size_t guess = 0;
-    int asked = 0;      // frames
-    int frames = 0;     // that observer remembers of it
-    OfEach in_place{};  // what these met where the machine is said to be
-
-    void begin(std::size_t another);
-    void note(const MetOfEach& met_in_place);
-    [[nodiscard]] double enough(std::size_t surface) const;
-    [[nodiscard]] bool may_be_better(const QuayObservations& observed) const;
-    [[nodiscard]] bool promises(const QuayObservations& observed) const;
-    [[nodiscard]] bool is_better(const Sight& there) const;
+  struct Tally {
+    std::vector<std::size_t> gained, lost;  // indices of asked_
   };
-  /// `off`: how the sensor is guessed to be off, about the origin of W. With what was observed before until
-  /// the observer forgets.
-  [[nodiscard]] const QuayObservations& observe(QuayObserver& observer, const QuayMap& map,
-                                                const Cloud& returns_W, const Twist& off);
-  [[nodiscard]] static Sight sight_of(const QuayObservations& observed, const Twist& off);
+  void count(const NearCells& things, const Eigen::Isometry3f& moves, std::size_t begin, std::size_t end);
+  void tally(const QuayMap& map, const Twist& off);
+  void try_guess(const QuayMap& map, const MachineGuess& guess, const Twist& off);
+  void try_guesses(const QuayMap& map, const MachineConfig& machine, std::size_t surplus_of_kept);
+  [[nodiscard]] std::size_t surplus() const;
+  [[nodiscard]] bool is_fixed(const std::vector<std::size_t>& asked, std::size_t fewest_pieces);
+  [[nodiscard]] bool is_better();
+  [[nodiscard]] bool loses_as_much();
+  [[nodiscard]] bool planes_show(const MachineGuess& guess) const;
+  void note_planes(const QuayObservations& observed, const MachineConfig& machine);
+  [[nodiscard]] Misplacement sight(QuayObserver& observer, const QuayMap& map, const Twist& off);
 
-  std::array<Inquiry, 2> inquiries_;
-  std::size_t next_guess_ = 0;
-  std::size_t better_ = 0;  // the inquiry that found the last one
-  QuayObserver there_;      // of one frame
-  Cloud moved_W_;           // scratch
+  bool takes_ = false;  // the newest frame's returns
+  std::uint32_t turn_ = 0;
+  Cloud returns_W_;  // of the frame that was taken
+  MachineStand stand_;
+  std::vector<Asked> asked_;
+  std::size_t first_ = 0;                                // so many of them are asked first
+  std::size_t next_ = 0;                                 // guess
+  std::array<double, kAllJoints.size()> shown_up_to_{};  // amounts, m, rad, by the planes
+  std::bitset<kMachineGuesses> would_win_;               // that lose as much as they would have to gain
+  std::optional<std::size_t> kept_;                      // guess
+  int frames_kept_ = 0;
+  QuayObserver of_kept_;
+  QuayObserver there_;  // of one frame
+  // Scratch:
+  Tally tally_;
+  std::vector<std::uint64_t> pieces_;
+  std::vector<float> coordinates_;
+  std::vector<double> across_;
+  Cloud inside_level_W_;
+  Cloud moved_W_;
 };
 
 }  // namespace hulltrack

@@ -35,9 +35,7 @@ bool beneath_or_above(const Box& area_W, const Point& p) {
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
                                         std::span<const ScanView> views) {
   begin_frame(scan, kLookedUp);
-  const double each =
-      double(QuayObserver::counted(returns_W_.size())) / std::max(1.0, double(returns_W_.size()));
-  seen_.observed = &observer_.observe(map, returns_W_, each, kReturnsOf);
+  seen_.observed = &observer_.observe(map, returns_W_, kReturnsOf);
   for (const ScanView& view : views) {
     for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
       look_through(map, surface, view);

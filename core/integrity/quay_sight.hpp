@@ -44,7 +44,7 @@ class QuaySight {
   /// walls are few, a third of them leaves travel unseen that all of them hold to 0.17 m.
   static constexpr std::size_t kLookedUp = 3000;
   static constexpr QuayObserver::OfClass kReturnsOf = {80, 80, 60, 40};
-  static constexpr std::uint32_t kProbes = 300;  // a frame, class and LiDAR
+  static constexpr std::uint32_t kProbes = 150;  // a frame, class and LiDAR
   static constexpr float kFarthest = 60.0F;      // m from the sensor
 
   /// `has_region`: the scan was cropped to the hull's region, so that what is outside is not hull.

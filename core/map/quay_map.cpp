@@ -90,7 +90,10 @@ Cloud centres_of(const std::vector<QuayMap::Plane>& planes) {
 }  // namespace
 
 QuayMap::QuayMap(const Cloud& cloud_W)
-    : planes_(tile_by_tile(find_planes(cloud_W))), tiles_(tiles_of(planes_)), tree_(centres_of(planes_)) {
+    : planes_(tile_by_tile(find_planes(cloud_W))),
+      tiles_(tiles_of(planes_)),
+      tree_(centres_of(planes_)),
+      things_(cloud_W) {
   for (const Plane& plane : planes_) {
     cells_.add(plane.centre_W, plane.normal_W, kGate, kBesides, plane.surface);
   }

@@ -1,4 +1,4 @@
-// What stands still in W, as small planes that a scan is asked for: quay top, kerbs, sheds, trestles.
+// What stands still in W: as small planes that a scan is asked for, and as places where there is anything.
 //
 // The surroundings of a berth without a ship. One plane a voxel of kSpacing wherever the cloud is flat around
 // it (surfels.hpp) and has nothing else close before or behind it; wires, bollards, edges, thin walls that
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/geometry/cloud.hpp"
+#include "core/map/near_cells.hpp"
 #include "core/map/surface_cells.hpp"
 #include "core/map/surfel.hpp"
 #include "core/search/kdtree.hpp"
@@ -65,6 +66,8 @@ class QuayMap {
   static constexpr std::size_t kClasses = kSurfaceClasses + 1;
   [[nodiscard]] const std::vector<Tile>& tiles(std::size_t surface) const { return tiles_[surface]; }
   [[nodiscard]] std::size_t count(SurfaceClass surface) const;
+  /// Where there is anything of it, flat or not.
+  [[nodiscard]] const NearCells& things() const { return things_; }
   /// Names at least every class that has a plane which holds p within kGate.
   [[nodiscard]] SurfaceCells::Classes classes_near(const Point& p_W) const { return cells_.at(p_W); }
 
@@ -73,6 +76,7 @@ class QuayMap {
   std::array<std::vector<Tile>, kClasses> tiles_;
   KdTree tree_;
   SurfaceCells cells_;
+  NearCells things_;
 };
 
 }  // namespace hulltrack

@@ -9,12 +9,7 @@ namespace {
 constexpr float kFarthest = 1e5F;  // m: farther away nothing is added and nothing found
 constexpr float kHalfDiagonal = 0.8661F * SurfaceCells::kCell;
 
-/// Rounded down. std::floor is a call on processors of before SSE 4.1, which the code is built for.
-int cell(float v) {
-  const float cells = v * (1.0F / SurfaceCells::kCell);
-  const int towards_zero = static_cast<int>(cells);
-  return towards_zero - (cells < static_cast<float>(towards_zero) ? 1 : 0);
-}
+int cell(float v) { return rounded_down(v * (1.0F / SurfaceCells::kCell)); }
 
 float middle_of(int cell) { return (static_cast<float>(cell) + 0.5F) * SurfaceCells::kCell; }
 

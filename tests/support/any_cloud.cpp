@@ -213,6 +213,12 @@ std::vector<std::uint8_t> any_bytes(std::mt19937& random, std::size_t things) {
 void use_as_map(Cloud cloud) {
   const QuayMap quay(cloud);  // any cloud may be named as the quay's as well
   require(quay.planes().size() == quay.tree().size(), "a plane of the quay has no middle");
+  for (const Point& p : cloud) {
+    const NearCells::Answer answer = quay.things().at(p);
+    require(answer.near || !(p.cwiseAbs().maxCoeff() < 1e5F), "a thing of the quay is not near itself");
+    require(answer.near || !answer.inside_level, "inside a surface that is not there");
+    require(quay.things().in_reach(p) || !answer.near, "near what the map does not reach");
+  }
   static_cast<void>(take_out_strays(cloud));
   TrackerConfig config;
   config.hull.region = Box{{-100.0F, -20.0F, -10.0F}, {100.0F, 40.0F, 30.0F}};

@@ -1,9 +1,10 @@
 // A small quay for tests: its cloud, and what a sensor on a loader's boom sees of it.
 //
 // Top at z = 0 from y = -20 to y = 0, a wall along the rails (y = -20) and two across them (x = 14, x = 40),
-// 6 m high; or a shed's end across them instead (x = 20), narrow and tall. W, metres. Returns are drawn from
-// the surfaces themselves, with 2 cm of noise along the normal, and shown as a machine sees them that is not
-// where it says: moved by E.
+// 6 m high; or a shed's end across them instead (x = 20), narrow and tall. W, metres. A map has the top on
+// either side of the walls, a scan that of the near side. Returns are drawn from the surfaces themselves,
+// with 2 cm of noise along the normal, and shown as a machine sees them that is not where it says: moved by
+// E.
 #pragma once
 
 #include <random>
@@ -43,7 +44,9 @@ inline const std::vector<QuaySurface>& quay_surfaces() {
       {{14.0F, -19.0F, 1.0F}, {0.0F, 15.0F, 0.0F}, {0.0F, 0.0F, 5.0F}},    // across the rails
       {{-20.0F, -20.0F, 1.0F}, {33.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 5.0F}},   // along them
       {{40.0F, -19.0F, 1.0F}, {0.0F, 15.0F, 0.0F}, {0.0F, 0.0F, 5.0F}},    // across them
-      {{20.0F, -19.0F, 1.0F}, {0.0F, 6.0F, 0.0F}, {0.0F, 0.0F, 12.0F}}};   // a shed's end, across them
+      {{20.0F, -19.0F, 1.0F}, {0.0F, 6.0F, 0.0F}, {0.0F, 0.0F, 12.0F}},    // a shed's end, across them
+      {{13.0F, -19.0F, 0.0F}, {33.0F, 0.0F, 0.0F}, {0.0F, 19.0F, 0.0F}},   // ground behind the walls across
+      {{-20.0F, -25.0F, 0.0F}, {66.0F, 0.0F, 0.0F}, {0.0F, 6.0F, 0.0F}}};  // and behind the one along
   return all;
 }
 

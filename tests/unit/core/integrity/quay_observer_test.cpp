@@ -12,7 +12,6 @@ namespace {
 using testing::quay_cloud;
 
 constexpr QuayObserver::OfClass kTwenty = {20, 20, 20, 20};
-constexpr auto kTop = static_cast<std::size_t>(SurfaceClass::horizontal);
 
 const QuayMap& map() {
   static const QuayMap quay(quay_cloud());
@@ -30,7 +29,7 @@ Cloud above_the_top(int n) {
 
 TEST(QuayObserver, AReturnTellsItsOffsetFromThePieceItHasMet) {
   QuayObserver observer;
-  const QuayObservations& observed = observer.observe(map(), above_the_top(10), 1.0, kTwenty);
+  const QuayObservations& observed = observer.observe(map(), above_the_top(10), kTwenty);
   ASSERT_EQ(observed.all.size(), 10U);
   for (const QuayObservation& o : observed.all) {
     EXPECT_EQ(o.surface, SurfaceClass::horizontal);
@@ -40,31 +39,29 @@ TEST(QuayObserver, AReturnTellsItsOffsetFromThePieceItHasMet) {
   }
 }
 
-TEST(QuayObserver, WhatIsTakenStandsForTheRest) {
+TEST(QuayObserver, OfAClassNoMoreAreHeldAgainstPlanesThanItIsTold) {
   QuayObserver observer;
-  const QuayObservations& observed = observer.observe(map(), above_the_top(200), 2.0, kTwenty);
-  EXPECT_EQ(observed.all.size(), 20U);
-  EXPECT_DOUBLE_EQ(observed.each_stands_for[kTop], 20.0) << "two of a frame's each, one in ten taken";
+  EXPECT_EQ(observer.observe(map(), above_the_top(200), kTwenty).all.size(), 20U);
 }
 
 TEST(QuayObserver, ASecondIsRememberedAndOfAClassNoMoreThanTheNewest) {
   QuayObserver observer;
   for (int frame = 0; frame < 30; ++frame) {
-    const QuayObservations& observed = observer.observe(map(), above_the_top(5), 1.0, kTwenty);
+    const QuayObservations& observed = observer.observe(map(), above_the_top(5), kTwenty);
     EXPECT_EQ(observed.all.size(), 5U * std::min<std::size_t>(frame + 1U, QuayObserver::kFrames));
     EXPECT_EQ(observed.all.front().age, std::min<std::uint32_t>(frame, QuayObserver::kFrames - 1));
   }
   for (int frame = 0; frame < 30; ++frame) {
-    EXPECT_LE(observer.observe(map(), above_the_top(50), 1.0, kTwenty).all.size(), QuayObserver::kOfClass);
+    EXPECT_LE(observer.observe(map(), above_the_top(50), kTwenty).all.size(), QuayObserver::kOfClass);
   }
   observer.forget();
-  EXPECT_TRUE(observer.observe(map(), {}, 1.0, kTwenty).all.empty());
+  EXPECT_TRUE(observer.observe(map(), {}, kTwenty).all.empty());
 }
 
 TEST(QuayObserver, WhatIsNearNothingObservesNothing) {
   QuayObserver observer;
-  EXPECT_TRUE(observer.observe(map(), {Point(0.0F, -10.0F, 0.7F)}, 1.0, kTwenty).all.empty());
-  EXPECT_TRUE(observer.observe(map(), {Point(1e6F, 0.0F, 0.0F)}, 1.0, kTwenty).all.empty());
+  EXPECT_TRUE(observer.observe(map(), {Point(0.0F, -10.0F, 0.7F)}, kTwenty).all.empty());
+  EXPECT_TRUE(observer.observe(map(), {Point(1e6F, 0.0F, 0.0F)}, kTwenty).all.empty());
   EXPECT_TRUE(observer.observe(QuayPlane{}, {Point(0.0F, 0.0F, 0.7F)}).all.empty());
   EXPECT_EQ(observer.observe(QuayPlane{}, {Point(0.0F, 0.0F, -0.3F)}).all.size(), 1U);
 }
