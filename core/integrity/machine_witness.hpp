@@ -2,8 +2,8 @@
 //
 // A machine beyond its class takes health until sights of the quay that would have shown it again do not, or
 // a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not; a frame that sees
-// none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.35 ms a
-// frame, whatever the map's size.
+// none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.4 ms a
+// frame, 0.7 ms while a charge stands, whatever the map's size.
 #pragma once
 
 #include <deque>

@@ -37,9 +37,10 @@ constexpr std::size_t kMuchBetter = 3;
 constexpr std::size_t kFewestOfFirst = 2;
 // Once it was, these are enough for it to stay.
 constexpr std::size_t kFewestKept = 4;
+// Of the difference of what is lost and gained, as counts scatter; three frames in a row have to say so.
 constexpr double kSigmas = 2.0;
 
-/// Calls take(value) for at most `most` of them, evenly, others each frame.
+/// Calls take(index) for at most `most` of `count`, evenly, others each turn.
 template <typename Take>
 void take_evenly(std::size_t count, std::size_t most, std::uint32_t turn, Take take) {
   const std::size_t stride = std::max<std::size_t>(1, (count + most - 1) / most);
