@@ -17,7 +17,6 @@ HIDDEN = {"travel": (0.13, 0.05 / 30), "slew": (0.4, 0.0), "luff": (0.8, 0.0)}  
 IN_VIEW = 1.5  # the quay is in view where it hides no more than so many times that
 # More than that may put the quay farther off than its planes are looked for, 0.6 m: of the angles at 60 and 40 m.
 SMALL = {"travel": 0.5, "slew": 0.5, "luff": 0.9}  # m, deg
-OF_BOLLARDS = 0.8  # of that is seen where nothing large is: of a face 1 m wide 0.4 m is, 0.5 m is not
 
 
 def at_times(plc, column, t_ns):
@@ -86,7 +85,7 @@ def by_the_table(joint, plc, t_ns):
 def in_view(seen, joint, plc, t_ns, off=np.inf):
     """At which of the times t_ns an error of the joint of `off` is."""
     return (seen.hides(joint, t_ns) <= IN_VIEW * by_the_table(joint, plc, t_ns)) & (
-        off <= np.where(seen.finds_large(joint, t_ns), np.inf, OF_BOLLARDS * SMALL[joint]))
+        seen.finds_large(joint, t_ns) | (off <= SMALL[joint]))
 
 
 def off_by(plc, falsified, joint, t_ns):

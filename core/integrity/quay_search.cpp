@@ -8,12 +8,12 @@ namespace {
 
 constexpr std::size_t kGuessesAFrame = 8;
 
-// So many returns of a frame are looked at, evenly: of them all are asked that may tell of any joint, and a
-// few of those inside level surfaces.
-constexpr std::size_t kReturns = 1000;
+// Of a frame's returns all are asked that may tell of any joint, and so many of those inside level surfaces.
 constexpr std::size_t kInsideLevel = 30;
-// First a part of the telling ones, evenly, and these few; the others of a guess that has not lost by then.
-constexpr std::size_t kFirst = 90;
+// First a few of the telling ones, evenly, then more and those; the others of a guess that has not lost by
+// then.
+constexpr std::size_t kGlance = 60;
+constexpr std::size_t kFirst = 150;
 constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns that are held against planes
 
 // What a joint moves across its plane by less is held against that plane, give or take what wear moves, m.
@@ -82,18 +82,23 @@ void QuaySearch::see(const QuayMap& map, const Cloud& returns_W, const QuayObser
   const NearCells& things = map.things();
   asked_.clear();
   inside_level_W_.clear();
-  take_evenly(returns_W.size(), kReturns, turn_, [&](std::size_t i) {
-    const Point& p = returns_W[i];
-    const auto [near, inside_level] = things.at(p);
+  answers_.resize(returns_W.size());
+  std::transform(returns_W.begin(), returns_W.end(), answers_.begin(),
+                 [&things](const Point& p) { return things.at(p); });
+  for (std::size_t i = 0; i < returns_W.size(); ++i) {
+    const auto [near, inside_level] = answers_[i];
     if (inside_level) {
-      inside_level_W_.push_back(p);
-    } else if (near || things.in_reach(p)) {  // else it can be neither gained nor lost
-      asked_.push_back({p, near});
+      inside_level_W_.push_back(returns_W[i]);
+    } else if (near || things.in_reach(returns_W[i])) {  // else it can be neither gained nor lost
+      asked_.push_back({returns_W[i], near});
     }
-  });
+  }
   first_ = 0;
   const auto ask_first = [this](std::size_t i) { std::swap(asked_[first_++], asked_[i]); };
-  take_evenly(asked_.size(), kFirst, turn_, ask_first);
+  take_evenly(asked_.size(), kGlance, turn_, ask_first);
+  glance_ = first_;
+  take_evenly(asked_.size() - glance_, kFirst - kGlance, turn_,
+              [&](std::size_t i) { ask_first(glance_ + i); });
   take_evenly(inside_level_W_.size(), kInsideLevel, turn_, [&](std::size_t i) {
     asked_.push_back({inside_level_W_[i], true});
     ask_first(asked_.size() - 1);
@@ -103,12 +108,16 @@ void QuaySearch::see(const QuayMap& map, const Cloud& returns_W, const QuayObser
 /// Of asked_, from `begin` to `end`, with what was counted before.
 void QuaySearch::count(const NearCells& things, const Eigen::Isometry3f& moves, std::size_t begin,
                        std::size_t end) {
+  // All are asked before one is looked at: so they do not wait for each other.
+  answers_.resize(end);
   for (std::size_t i = begin; i < end; ++i) {
-    const Point there_W = moves * asked_[i].p_W;
-    const bool near = things.at(there_W).near;
+    answers_[i] = things.at(moves * asked_[i].p_W);
+  }
+  for (std::size_t i = begin; i < end; ++i) {
+    const bool near = answers_[i].near;
     if (near && !asked_[i].near) {
       tally_.gained.push_back(i);
-    } else if (!near && asked_[i].near && things.in_reach(there_W)) {
+    } else if (!near && asked_[i].near && things.in_reach(moves * asked_[i].p_W)) {
       tally_.lost.push_back(i);
     }
   }
@@ -121,15 +130,19 @@ void QuaySearch::tally(const QuayMap& map, const Twist& off) {
   count(map.things(), Eigen::Isometry3f(se3_exp(-off).cast<float>()), 0, asked_.size());
 }
 
-/// Counts the first part, notes whether such an error of a joint would be found, and counts the rest where it
-/// is worth it.
+/// Counts the first part, or less of a guess that has lost before, notes whether such an error of a joint
+/// would be found, and counts the rest where it is worth it.
 void QuaySearch::try_guess(const QuayMap& map, const MachineGuess& guess, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   tally_.gained.clear();
   tally_.lost.clear();
-  count(map.things(), moves, 0, first_);
+  count(map.things(), moves, 0, glance_);
+  const bool has_lost = tally_.lost.size() > tally_.gained.size() && loses_as_much();
+  if (!has_lost) {
+    count(map.things(), moves, glance_, first_);
+  }
   would_win_[next_] = guess.joint && (loses_as_much() || planes_show(guess));
-  if (tally_.gained.size() >= std::max(kFewestOfFirst, tally_.lost.size())) {
+  if (!has_lost && tally_.gained.size() >= std::max(kFewestOfFirst, tally_.lost.size())) {
     count(map.things(), moves, first_, asked_.size());
   }
 }
@@ -277,6 +290,7 @@ void QuaySearch::forget() {
   takes_ = false;
   returns_W_.clear();
   asked_.clear();
+  glance_ = 0;
   first_ = 0;
   next_ = 0;
   would_win_.reset();

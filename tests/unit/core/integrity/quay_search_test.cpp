@@ -50,13 +50,13 @@ const QuayMap& map() {
   return quay;
 }
 
-/// What a scan of it shows, with `besides` of no map.
-Cloud returns(unsigned seed, const std::vector<Thing>& things, const std::vector<Thing>& besides = {}) {
+/// What a scan of it shows, `each` returns of a thing, with `besides` of no map.
+Cloud returns(unsigned seed, const std::vector<Thing>& things, const std::vector<Thing>& besides, int each) {
   std::mt19937 random(seed);
   Cloud cloud;
   add_ground(cloud, -55.0F, 55.0F, 1.3F);
   for (const Thing& thing : things) {
-    add_thing(cloud, thing, 12, random);
+    add_thing(cloud, thing, each, random);
   }
   for (const Thing& thing : besides) {
     add_thing(cloud, thing, 40, random);
@@ -73,6 +73,8 @@ Cloud moved(Cloud cloud, const Pose& E) {
 
 class Looks {
  public:
+  explicit Looks(int returns_of_a_thing = 12) : each_(returns_of_a_thing) {}
+
   /// The last of so many frames of a machine whose joints read too much.
   std::optional<QuaySearch::Elsewhere> run(int frames, const Joints& too_much,
                                            const std::vector<Thing>& things = kThings,
@@ -82,7 +84,7 @@ class Looks {
       const Joints reported{kWorking.d_x + too_much.d_x, kWorking.theta_r + too_much.theta_r,
                             kWorking.theta_p + too_much.theta_p};
       const Cloud returns_W =
-          moved(returns(seed_++, things, besides), testing::misplaced(reported, kWorking));
+          moved(returns(seed_++, things, besides, each_), testing::misplaced(reported, kWorking));
       search_.see(map(), returns_W, observer_.observe(map(), returns_W, {80, 80, 60, 40}),
                   testing::quay_machine(), testing::stand_at(reported), false);
       found = search_.look(map(), testing::quay_machine());
@@ -92,6 +94,7 @@ class Looks {
   QuaySearch& search() { return search_; }
 
  private:
+  int each_;
   unsigned seed_ = 0;
   QuayObserver observer_;
   QuaySearch search_;
@@ -113,6 +116,13 @@ TEST(QuaySearch, ThingsThatAreNoWallsTellOfATravelAndOfASlew) {
     EXPECT_TRUE(found->guess.joint == JointName::slew || !found->guess.joint) << "or a mount that is turned";
     EXPECT_NEAR(degrees(found->guess.amount), off, 0.61) << "two steps";
   }
+}
+
+TEST(QuaySearch, EveryReturnOfAFrameIsAsked) {
+  Looks looks(2);  // of a thing: 14 among 1,360 of the ground
+  const auto found = looks.run(kRound, {2.2, 0.0, 0.0});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->guess.joint == JointName::travel);
 }
 
 TEST(QuaySearch, AMachineThatIsRightIsBetterNowhere) {
