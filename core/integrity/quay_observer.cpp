@@ -66,9 +66,13 @@ void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, const OfCl
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
-  for (const Point& p : returns_W) {
-    if (const SurfaceCells::Classes near = map.classes_near(p); near != 0) {
-      candidates_W_[static_cast<std::size_t>(kRarestOf[near])].push_back(p);
+  // All are asked before one is looked at: so they do not wait for each other.
+  near_.resize(returns_W.size());
+  std::transform(returns_W.begin(), returns_W.end(), near_.begin(),
+                 [&map](const Point& p) { return map.classes_near(p); });
+  for (std::size_t i = 0; i < returns_W.size(); ++i) {
+    if (near_[i] != 0) {
+      candidates_W_[static_cast<std::size_t>(kRarestOf[near_[i]])].push_back(returns_W[i]);
     }
   }
   chosen_W_.clear();

@@ -60,6 +60,7 @@ class QuayObserver {
   std::array<std::deque<Recent>, QuayMap::kClasses> recent_;
   QuayObservations observations_;
   // Scratch:
+  std::vector<SurfaceCells::Classes> near_;
   std::array<Cloud, QuayMap::kClasses> candidates_W_;
   Cloud chosen_W_;
   std::vector<Neighbour> nearest_;

@@ -35,7 +35,6 @@ NearCells::NearCells(std::span<const Point> points) {
       mark(cell, blocks);
     }
   }
-  blocks_.emplace_back();
   for (const Cell& block : blocks) {
     mark_level(block);
   }
@@ -51,12 +50,12 @@ void NearCells::mark(const Cell& cell, std::vector<Cell>& blocks) {
           continue;
         }
         const Cell beside{cell.x + dx, cell.y + dy, cell.z + dz};
-        const std::uint32_t block = index_.add(beside.x >> kBits, beside.y >> kBits, beside.z >> kBits);
-        if (block == blocks_.size()) {
+        const std::uint32_t place = 1 + index_.add(beside.x >> kBits, beside.y >> kBits, beside.z >> kBits);
+        if (place == blocks_.size()) {
           blocks_.emplace_back();
           blocks.push_back({beside.x & ~(kSide - 1), beside.y & ~(kSide - 1), beside.z & ~(kSide - 1)});
         }
-        blocks_[block].near |= bit_of(beside);
+        blocks_[place].near |= bit_of(beside);
       }
     }
   }
@@ -74,7 +73,7 @@ void NearCells::mark_level(const Cell& block) {
                          });
     level |= goes_on ? bit_of(cell) : 0;
   }
-  blocks_[index_.find(block.x >> kBits, block.y >> kBits, block.z >> kBits)].level = level;
+  blocks_[1 + index_.find(block.x >> kBits, block.y >> kBits, block.z >> kBits)].level = level;
 }
 
 bool NearCells::is_far(const Point& p) { return !(p.cwiseAbs().maxCoeff() < kFarthest); }
@@ -88,10 +87,11 @@ std::uint64_t NearCells::bit_of(const Cell& cell) {
   return std::uint64_t{1} << place_of(cell.x, cell.y, cell.z);
 }
 
-/// Without a branch: whether there is one is hard to foretell.
+/// Without a branch: whether there is one is hard to foretell. The empty one where there is none.
 const NearCells::Block& NearCells::block_of(const Cell& cell) const {
-  const std::size_t block = index_.find(cell.x >> kBits, cell.y >> kBits, cell.z >> kBits);
-  return blocks_[std::min(block, blocks_.size() - 1)];
+  static_assert(BlockIndex::kNone + 1U == 0U);
+  const std::uint32_t place = 1 + index_.find(cell.x >> kBits, cell.y >> kBits, cell.z >> kBits);
+  return blocks_[place];
 }
 
 bool NearCells::near(const Cell& cell) const { return (block_of(cell).near & bit_of(cell)) != 0; }

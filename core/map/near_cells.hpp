@@ -49,8 +49,8 @@ class NearCells {
   void mark_level(const Cell& block);
 
   BlockIndex index_;
-  BlockIndex columns_;         // of blocks
-  std::vector<Block> blocks_;  // and an empty one
+  BlockIndex columns_;             // of blocks
+  std::vector<Block> blocks_{{}};  // an empty one, then those of the index
 };
 
 }  // namespace hulltrack

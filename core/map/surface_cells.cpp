@@ -31,11 +31,11 @@ void SurfaceCells::add(const Point& middle, const Point& normal, float along, fl
         if (std::abs(off) > along + kHalfDiagonal || d.squaredNorm() - off * off > most_beside2) {
           continue;
         }
-        const std::uint32_t block = index_.add(x >> kBits, y >> kBits, z >> kBits);
-        if (block == blocks_.size()) {
+        const std::uint32_t place = 1 + index_.add(x >> kBits, y >> kBits, z >> kBits);
+        if (place == blocks_.size()) {
           blocks_.emplace_back().fill(0);
         }
-        blocks_[block][in_block(x, y, z)] |= bit;
+        blocks_[place][in_block(x, y, z)] |= bit;
       }
     }
   }
@@ -48,8 +48,10 @@ SurfaceCells::Classes SurfaceCells::at(const Point& p) const {
   const int x = cell(p.x());
   const int y = cell(p.y());
   const int z = cell(p.z());
-  const std::uint32_t block = index_.find(x >> kBits, y >> kBits, z >> kBits);
-  return block == BlockIndex::kNone ? Classes{0} : blocks_[block][in_block(x, y, z)];
+  // Without a branch, which would be hard to foretell. Where there is no block the empty one answers.
+  static_assert(BlockIndex::kNone + 1U == 0U);
+  const std::uint32_t place = 1 + index_.find(x >> kBits, y >> kBits, z >> kBits);
+  return blocks_[place][in_block(x, y, z)];
 }
 
 std::size_t SurfaceCells::in_block(int x, int y, int z) {

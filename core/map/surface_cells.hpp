@@ -33,7 +33,7 @@ class SurfaceCells {
   [[nodiscard]] static std::size_t in_block(int x, int y, int z);
 
   BlockIndex index_;
-  std::vector<std::array<Classes, kCells>> blocks_;
+  std::vector<std::array<Classes, kCells>> blocks_{{}};  // an empty one, then those of the index
 };
 
 }  // namespace hulltrack
