@@ -192,19 +192,21 @@ MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplac
 
 /// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
 /// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
-/// of there then.
+/// of there then, of the better one.
 void MachineWitness::weigh_other_places(const MachineStand& stand, const MachineCharge* asked,
                                         Verdict& verdict) {
-  const auto charge = [&](const Misplacement& there, const MachineDoubt& doubt) {
-    verdict = {.known = true, .charge = charge_by(doubt, there), .doubt = doubt};
-  };
   const auto elsewhere = search_.look(*map_, machine_);
+  std::optional<Verdict> of_elsewhere = elsewhere ? judge(stand, *elsewhere) : std::nullopt;
   if (asked != nullptr) {
     const QuaySearch::There there = search_.look_there(*map_, machine_, *asked->joint, asked->amount);
     verdict.refutes_asked = there.refuted;
+    if (of_elsewhere && elsewhere->surplus > there.surplus) {
+      verdict = std::move(*of_elsewhere);
+      return;
+    }
     const MachineDoubt doubt = doubt_machine(machine_, stand, there.seen);
     if (doubt.beyond_class) {
-      charge(there.seen, doubt);
+      verdict = {.known = true, .charge = charge_by(doubt, there.seen), .doubt = doubt};
       return;
     }
     // Too little may be in view to tell: then only what else this frame shows to be wrong counts.
@@ -214,16 +216,25 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const Machine
       return;
     }
   }
-  if (elsewhere) {
-    const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere->seen);
-    if (doubt.beyond_class) {
-      charge(elsewhere->seen, doubt);
-    } else if (elsewhere->lasting && elsewhere->guess.joint && elsewhere->guess.beyond_wear &&
-               doubt.joints.at(static_cast<std::size_t>(*elsewhere->guess.joint)).hidden >=
-                   std::abs(elsewhere->guess.amount)) {
-      verdict = {.known = true, .charge = charge_by(elsewhere->guess, elsewhere->seen), .doubt = doubt};
-    }
+  if (of_elsewhere) {
+    verdict = std::move(*of_elsewhere);
   }
+}
+
+/// What a guess that is better comes to, if to a charge: by the planes that are met there, or by the guess
+/// alone once it has lasted and no planes tell of the joint.
+std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand& stand,
+                                                             const QuaySearch::Elsewhere& elsewhere) const {
+  const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere.seen);
+  if (doubt.beyond_class) {
+    return Verdict{.known = true, .charge = charge_by(doubt, elsewhere.seen), .doubt = doubt};
+  }
+  const MachineGuess& guess = elsewhere.guess;
+  if (elsewhere.lasting && guess.joint && guess.beyond_wear &&
+      doubt.joints.at(static_cast<std::size_t>(*guess.joint)).hidden >= std::abs(guess.amount)) {
+    return Verdict{.known = true, .charge = charge_by(guess, elsewhere.seen), .doubt = doubt};
+  }
+  return std::nullopt;
 }
 
 /// Where no planes tell of the joint, the things that are met there do.

@@ -63,6 +63,8 @@ class MachineWitness {
                                                 const MachineStand& stand, bool on_trial);
   [[nodiscard]] std::vector<Twist> doubt_of_reference() const;
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
+  [[nodiscard]] std::optional<Verdict> judge(const MachineStand& stand,
+                                             const QuaySearch::Elsewhere& elsewhere) const;
   void acquit(const Verdict& verdict, const MachineCharge* asked);
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;

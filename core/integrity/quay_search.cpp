@@ -8,12 +8,11 @@ namespace {
 
 constexpr std::size_t kGuessesAFrame = 8;
 
-// Of a frame's returns all are asked that may tell of any joint, and so many of those inside level surfaces.
-constexpr std::size_t kInsideLevel = 30;
-// First a few of the telling ones, evenly, then more and those; the others of a guess that has not lost by
-// then.
+// A guess is first asked a few of the returns that may tell of any joint, evenly, then more of them and some
+// of those inside level surfaces; all others if it has not lost by then.
 constexpr std::size_t kGlance = 60;
 constexpr std::size_t kFirst = 150;
+constexpr std::size_t kInsideLevel = 30;
 constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns that are held against planes
 
 // What a joint moves across its plane by less is held against that plane, give or take what wear moves, m.
@@ -99,9 +98,11 @@ void QuaySearch::see(const QuayMap& map, const Cloud& returns_W, const QuayObser
   glance_ = first_;
   take_evenly(asked_.size() - glance_, kFirst - kGlance, turn_,
               [&](std::size_t i) { ask_first(glance_ + i); });
+  level_first_ = 0;
   take_evenly(inside_level_W_.size(), kInsideLevel, turn_, [&](std::size_t i) {
     asked_.push_back({inside_level_W_[i], true});
     ask_first(asked_.size() - 1);
+    std::swap(inside_level_W_[level_first_++], inside_level_W_[i]);
   });
 }
 
@@ -123,33 +124,51 @@ void QuaySearch::count(const NearCells& things, const Eigen::Isometry3f& moves, 
   }
 }
 
-/// Counts all that is asked. `off`: how the sensor is guessed to be off, about the origin of W.
-void QuaySearch::tally(const QuayMap& map, const Twist& off) {
-  tally_.gained.clear();
-  tally_.lost.clear();
-  count(map.things(), Eigen::Isometry3f(se3_exp(-off).cast<float>()), 0, asked_.size());
+/// Counts all but the first part, and what is inside level surfaces only if that is moved out of them: else
+/// none of it is lost.
+void QuaySearch::count_rest(const NearCells& things, const Eigen::Isometry3f& moves, const Twist& off) {
+  count(things, moves, first_, asked_.size());
+  const bool stays_level = off.head<2>().isZero(0.0) && off[5] == 0.0;
+  if (stays_level) {
+    return;
+  }
+  for (std::size_t i = level_first_; i < inside_level_W_.size(); ++i) {
+    const Point there_W = moves * inside_level_W_[i];
+    tally_.lost_level += !things.at(there_W).near && things.in_reach(there_W) ? 1 : 0;
+  }
 }
 
-/// Counts the first part, or less of a guess that has lost before, notes whether such an error of a joint
-/// would be found, and counts the rest where it is worth it.
+/// Counts everything. `off`: how the sensor is guessed to be off, about the origin of W.
+void QuaySearch::tally(const QuayMap& map, const Twist& off) {
+  const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
+  tally_.clear();
+  count(map.things(), moves, 0, first_);
+  count_rest(map.things(), moves, off);
+}
+
+/// Counts until it is clear that the guess loses, and whether such an error of a joint would be found; all of
+/// it if that is not clear, or the guess may be right.
 void QuaySearch::try_guess(const QuayMap& map, const MachineGuess& guess, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
-  tally_.gained.clear();
-  tally_.lost.clear();
+  tally_.clear();
   count(map.things(), moves, 0, glance_);
-  const bool has_lost = tally_.lost.size() > tally_.gained.size() && loses_as_much();
-  if (!has_lost) {
+  std::size_t counted = first_;
+  bool clear = tally_.lost.size() > tally_.gained.size() && loses_as_much(counted);
+  if (!clear) {
     count(map.things(), moves, glance_, first_);
+    const bool may_be_right = tally_.gained.size() >= std::max(kFewestOfFirst, tally_.lost.size());
+    clear = !may_be_right && (!guess.joint || loses_as_much(counted) || planes_show(guess));
   }
-  would_win_[next_] = guess.joint && (loses_as_much() || planes_show(guess));
-  if (!has_lost && tally_.gained.size() >= std::max(kFewestOfFirst, tally_.lost.size())) {
-    count(map.things(), moves, first_, asked_.size());
+  if (!clear) {
+    count_rest(map.things(), moves, off);
+    counted = asked_.size();
   }
+  would_win_[next_] = guess.joint && (loses_as_much(counted) || planes_show(guess));
 }
 
-/// Whether what the first part loses is as much as a better guess has to gain.
-bool QuaySearch::loses_as_much() {
-  const double part = double(first_) / double(std::max<std::size_t>(1, asked_.size()));
+/// Whether what so many of the asked lose is as much as a better guess has to gain.
+bool QuaySearch::loses_as_much(std::size_t counted) {
+  const double part = double(counted) / double(std::max<std::size_t>(1, asked_.size()));
   return double(tally_.lost.size()) >= part * double(kFewestGained) &&
          is_fixed(tally_.lost, kFewestPieces - 1);
 }
@@ -201,16 +220,18 @@ bool QuaySearch::is_fixed(const std::vector<std::size_t>& asked, std::size_t few
 }
 
 bool QuaySearch::is_better() {
-  return tally_.gained.size() >= std::max(kFewestGained, kMuchBetter * tally_.lost.size()) &&
+  return tally_.gained.size() >= std::max(kFewestGained, kMuchBetter * tally_.all_lost()) &&
          is_fixed(tally_.gained, kFewestPieces);
 }
 
 std::size_t QuaySearch::surplus() const {
-  return tally_.gained.size() - std::min(tally_.gained.size(), tally_.lost.size());
+  return tally_.gained.size() - std::min(tally_.gained.size(), tally_.all_lost());
 }
 
-/// Keeps the best of the next ones, if it is better than the one that is kept.
-void QuaySearch::try_guesses(const QuayMap& map, const MachineConfig& machine, std::size_t surplus_of_kept) {
+/// Keeps the best of the next ones, if it is better than the one that is kept. The surplus of what is kept
+/// then.
+std::size_t QuaySearch::try_guesses(const QuayMap& map, const MachineConfig& machine,
+                                    std::size_t surplus_of_kept) {
   std::optional<std::size_t> best;
   std::size_t most = surplus_of_kept;
   for (std::size_t i = 0; i < kGuessesAFrame; ++i) {
@@ -227,6 +248,7 @@ void QuaySearch::try_guesses(const QuayMap& map, const MachineConfig& machine, s
     frames_kept_ = 0;
     of_kept_.forget();
   }
+  return most;
 }
 
 std::optional<QuaySearch::Elsewhere> QuaySearch::look(const QuayMap& map, const MachineConfig& machine) {
@@ -235,17 +257,18 @@ std::optional<QuaySearch::Elsewhere> QuaySearch::look(const QuayMap& map, const 
     tally(map, twist_of(machine_guess(*kept_), machine, stand_));
     surplus_of_kept = surplus();
     ++frames_kept_;
-    if (tally_.gained.size() < std::max(kFewestKept, kMuchBetter * tally_.lost.size())) {
+    if (tally_.gained.size() < std::max(kFewestKept, kMuchBetter * tally_.all_lost())) {
       kept_.reset();
       surplus_of_kept = 0;
     }
   }
-  try_guesses(map, machine, surplus_of_kept);
+  const std::size_t surplus = try_guesses(map, machine, surplus_of_kept);
   if (!kept_) {
     return std::nullopt;
   }
   const MachineGuess guess = machine_guess(*kept_);
-  return Elsewhere{sight(of_kept_, map, twist_of(guess, machine, stand_)), guess, frames_kept_ >= kLasting};
+  return Elsewhere{sight(of_kept_, map, twist_of(guess, machine, stand_)), guess, surplus,
+                   frames_kept_ >= kLasting};
 }
 
 QuaySearch::There QuaySearch::look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
@@ -253,12 +276,12 @@ QuaySearch::There QuaySearch::look_there(const QuayMap& map, const MachineConfig
   const Twist off = twist_of({.joint = joint, .amount = amount}, machine, stand_);
   tally(map, off);
   const auto gained = double(tally_.gained.size());
-  const auto lost = double(tally_.lost.size());
+  const auto lost = double(tally_.all_lost());
   if (lost > gained + kSigmas * std::sqrt(gained + lost + 1.0)) {
     return {.worse = true, .refuted = is_fixed(tally_.lost, kFewestPieces), .seen = {}};
   }
   there_.forget();
-  return {.seen = sight(there_, map, off)};
+  return {.surplus = surplus(), .seen = sight(there_, map, off)};
 }
 
 /// By the planes near returns if `off` is how the sensor is off. With what was observed before until the

@@ -48,14 +48,16 @@ class QuaySearch {
   struct Elsewhere {
     Misplacement seen;  // by the planes near returns there
     MachineGuess guess;
-    bool lasting = false;  // the guess has been better for half a second
+    std::size_t surplus = 0;  // of returns that are gained there over those that are lost
+    bool lasting = false;     // the guess has been better for half a second
   };
   /// The next guesses, of the returns seen last; where the quay then lies if one is better.
   [[nodiscard]] std::optional<Elsewhere> look(const QuayMap& map, const MachineConfig& machine);
   struct There {
     bool worse = false;    // than in place, by more than chance
     bool refuted = false;  // besides, by what is too large to be moved
-    Misplacement seen;     // as above; nothing where it is worse
+    std::size_t surplus = 0;
+    Misplacement seen;  // as above; nothing where it is worse
   };
   /// Where the quay lies were the joint off by `amount` (m, rad).
   [[nodiscard]] There look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
@@ -76,15 +78,23 @@ class QuaySearch {
   };
   struct Tally {
     std::vector<std::size_t> gained, lost;  // indices of asked_
+    std::size_t lost_level = 0;             // of the rest inside level surfaces
+    [[nodiscard]] std::size_t all_lost() const { return lost.size() + lost_level; }
+    void clear() {
+      gained.clear();
+      lost.clear();
+      lost_level = 0;
+    }
   };
   void count(const NearCells& things, const Eigen::Isometry3f& moves, std::size_t begin, std::size_t end);
+  void count_rest(const NearCells& things, const Eigen::Isometry3f& moves, const Twist& off);
   void tally(const QuayMap& map, const Twist& off);
   void try_guess(const QuayMap& map, const MachineGuess& guess, const Twist& off);
-  void try_guesses(const QuayMap& map, const MachineConfig& machine, std::size_t surplus_of_kept);
+  std::size_t try_guesses(const QuayMap& map, const MachineConfig& machine, std::size_t surplus_of_kept);
   [[nodiscard]] std::size_t surplus() const;
   [[nodiscard]] bool is_fixed(const std::vector<std::size_t>& asked, std::size_t fewest_pieces);
   [[nodiscard]] bool is_better();
-  [[nodiscard]] bool loses_as_much();
+  [[nodiscard]] bool loses_as_much(std::size_t counted);
   [[nodiscard]] bool planes_show(const MachineGuess& guess) const;
   void note_planes(const QuayObservations& observed, const MachineConfig& machine);
   [[nodiscard]] Misplacement sight(QuayObserver& observer, const QuayMap& map, const Twist& off);
@@ -96,6 +106,8 @@ class QuaySearch {
   std::vector<Asked> asked_;
   std::size_t glance_ = 0;                               // so many of them are asked first,
   std::size_t first_ = 0;                                // and up to here next
+  Cloud inside_level_W_;                                 // near, and of no use for most joints
+  std::size_t level_first_ = 0;                          // so many of these are among asked_
   std::size_t next_ = 0;                                 // guess
   std::array<double, kAllJoints.size()> shown_up_to_{};  // amounts, m, rad, by the planes
   std::bitset<kMachineGuesses> would_win_;               // that lose as much as they would have to gain
@@ -109,7 +121,6 @@ class QuaySearch {
   std::vector<std::uint64_t> pieces_;
   std::vector<float> coordinates_;
   std::vector<double> across_;
-  Cloud inside_level_W_;
   Cloud moved_W_;
 };
 
