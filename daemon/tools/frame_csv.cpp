@@ -99,6 +99,7 @@ std::string frame_csv_line(const TrackResult& r, std::optional<double> processin
   } else {
     line += ',';
   }
+  append_words(line, r.health ? std::string{} : r.reason);
   line.pop_back();
   return line;
 }

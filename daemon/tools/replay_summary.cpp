@@ -88,6 +88,9 @@ void ReplaySummary::add(const TrackResult& r, double processing_ms) {
     }
   }
   frames_.push_back(frame);
+  if (!r.health) {
+    reasons_.add(r.frame, r.reason);
+  }
   found_top_ = r.found_top ? r.found_top : found_top_;
 }
 
@@ -95,7 +98,7 @@ std::string ReplaySummary::text(bool with_timing) const {
   if (empty()) {
     return "no frames\n";
   }
-  std::string text = states_text() + figures_text(with_timing);
+  std::string text = states_text() + reasons_.text(frames_.size()) + figures_text(with_timing);
   if (!truth_.empty()) {
     text += errors_text() + reaction_text();
   }

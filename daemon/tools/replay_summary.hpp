@@ -1,4 +1,4 @@
-// What did a replay come to? States, figures and, where the truth is known, errors.
+// What did a replay come to? States, reasons, figures and, where the truth is known, errors.
 //
 // Errors are taken at the middle of each frame, the truth interpolated linearly: translation of the
 // reference point (m), angle between the rotations (deg). Pure; the caller prints.
@@ -12,6 +12,7 @@
 
 #include "core/io/plc_csv.hpp"
 #include "core/tracking/hull_tracker.hpp"
+#include "daemon/tools/reason_table.hpp"
 
 namespace hulltrack {
 
@@ -57,6 +58,7 @@ class ReplaySummary {
   std::vector<TruthRow> truth_;
   double max_speed_;
   std::vector<Frame> frames_;
+  ReasonTable reasons_;
   std::optional<SeenTop> found_top_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "daemon/tools/frame_csv.hpp"
 #include "daemon/tools/joint_csv.hpp"
+#include "daemon/tools/reason_table.hpp"
 #include "daemon/tools/replay_summary.hpp"
 
 namespace hulltrack {
@@ -55,20 +56,30 @@ TEST(FrameCsv, WhatIsUnknownIsEmpty) {
   not_registered.state = State::fault;
   not_registered.faults = fault::plc_stale;
   const std::string line = frame_csv_line(not_registered, std::nullopt);
-  EXPECT_EQ(line, "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0," + std::string(10 + 21 + 1, ','));
-  EXPECT_EQ(columns(line).size(), 21U + 10U + 21U + 1U);
+  EXPECT_EQ(line, "0,0,5,0,2,,,,,,,,,,,,0,-1,-1,0," + std::string(10 + 21 + 1 + 1, ','));
+  EXPECT_EQ(columns(line).size(), 21U + 10U + 21U + 1U + 1U);
   TrackResult sigma_alone = result(3, 0.1, State::tracking);
   sigma_alone.sigma_translation = 0.01;
   EXPECT_EQ(columns(frame_csv_line(sigma_alone, 1.5))["c_rx_rx"], "") << "nobody's covariance is zero";
 }
 
-TEST(FrameCsv, WhatQ1ShouldBeComesLast) {
+TEST(FrameCsv, WhatQ1ShouldBeComesAfterTheCovariance) {
   TrackResult r = result(3, 0.1, State::tracking);
   EXPECT_EQ(columns(frame_csv_line(r, 1.5))["q1_expected"], "");
   r.metrics.q1_expected = 0.0625;
   const std::string line = frame_csv_line(r, 1.5);
   EXPECT_EQ(columns(line)["q1_expected"], "0.0625");
-  EXPECT_THAT(line, ::testing::EndsWith(",0.0625"));
+  EXPECT_THAT(line, ::testing::EndsWith(",0.0625,"));
+}
+
+TEST(FrameCsv, TheReasonForAHealthOf0ComesLastAndQuoted) {
+  TrackResult r = result(3, 0.1, State::lost);
+  r.reason = "Q1 is 0.31 m, \"lost\" above 0.30 m\nor more";
+  EXPECT_THAT(frame_csv_line(r, 1.5),
+              ::testing::EndsWith(",\"Q1 is 0.31 m, \"\"lost\"\" above 0.30 m or more\""));
+  r = result(3, 0.1, State::tracking);
+  r.reason = "nobody asks";
+  EXPECT_THAT(frame_csv_line(r, 1.5), ::testing::EndsWith(","));
 }
 
 TEST(JointCsv, AJointThatTheQuayDoesNotShowIsEmpty) {
@@ -175,6 +186,45 @@ TEST(ReplaySummary, WhatQ1ShouldBeStandsBesideIt) {
   summary.add(r, 1.0);
   EXPECT_THAT(summary.text(false),
               HasSubstr("Q1          median 0.070 m, 99 % 0.070 m; expected median 0.062 m, 99 % 0.062 m\n"));
+}
+
+TEST(ReplaySummary, ReasonsStandBehindTheStates) {
+  ReplaySummary summary({}, 0.3);
+  TrackResult r = result(0, 0.0, State::lost);
+  r.reason = "Q1 is 0.31 m";
+  summary.add(r, 1.0);
+  summary.add(result(1, 0.0, State::tracking), 1.0);
+  EXPECT_THAT(summary.text(false),
+              HasSubstr("50.00 %\nhealth 0     50.00 %, first in frame 0: Q1 is 0.31 m\nQ1  "));
+}
+
+TEST(ReasonTable, ReasonsThatDifferInTheirFiguresAreOneKind) {
+  ReasonTable table;
+  table.add(7, "the hull seems to heel by -1.5 deg of 3, hull.max_heel");
+  table.add(8, "a LiDAR is silent");
+  table.add(9, "the hull seems to heel by 12 deg of 3, hull.max_heel");
+  EXPECT_EQ(table.text(10),
+            "health 0     20.00 %, first in frame 7: the hull seems to heel by -1.5 deg of 3, hull.max_heel\n"
+            "             10.00 %, first in frame 8: a LiDAR is silent\n");
+}
+
+TEST(ReasonTable, NamesWithDigitsAreNoFigures) {
+  ReasonTable table;
+  table.add(0, "Q1 is high");
+  table.add(1, "Q3 is high");
+  EXPECT_THAT(table.text(2), HasSubstr("Q3 is high"));
+}
+
+TEST(ReasonTable, WithoutFramesThereIsNothingToSay) { EXPECT_EQ(ReasonTable().text(10), ""); }
+
+TEST(ReasonTable, AHundredKindsDoNotFillTheScreen) {
+  ReasonTable table;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    table.add(i, std::string(i + 1, 'x'));
+  }
+  const std::string text = table.text(100);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 13);
+  EXPECT_THAT(text, HasSubstr("  88.00 % for 88 other reasons\n"));
 }
 
 TEST(ReplaySummary, WithoutTruthThereAreNoErrors) {
