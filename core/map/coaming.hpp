@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "core/kdtree/kdtree.hpp"
 #include "core/map/relief.hpp"
 #include "core/map/surfel.hpp"
-#include "core/search/kdtree.hpp"
 
 namespace hulltrack {
 

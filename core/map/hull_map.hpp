@@ -9,12 +9,12 @@
 
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/point_blocks.hpp"
+#include "core/kdtree/kdtree.hpp"
 #include "core/map/occupancy_grid.hpp"
 #include "core/map/patches.hpp"
 #include "core/map/plane_map.hpp"
 #include "core/map/relief.hpp"
 #include "core/map/surfel.hpp"
-#include "core/search/kdtree.hpp"
 
 namespace hulltrack {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/geometry/cloud.hpp"
+#include "core/kdtree/kdtree.hpp"
 #include "core/map/relief.hpp"
 #include "core/map/surfel.hpp"
-#include "core/search/kdtree.hpp"
 
 namespace hulltrack {
 

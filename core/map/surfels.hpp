@@ -8,8 +8,8 @@
 
 #include <vector>
 
+#include "core/kdtree/kdtree.hpp"
 #include "core/map/surfel.hpp"
-#include "core/search/kdtree.hpp"
 
 namespace hulltrack {
 

@@ -17,7 +17,7 @@
 
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/se3.hpp"
-#include "core/search/kdtree.hpp"
+#include "core/kdtree/kdtree.hpp"
 
 namespace hulltrack {
 

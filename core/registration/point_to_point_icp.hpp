@@ -13,9 +13,9 @@
 
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/se3.hpp"
+#include "core/kdtree/kdtree.hpp"
 #include "core/registration/correspondence_cache.hpp"
 #include "core/registration/icp_result.hpp"
-#include "core/search/kdtree.hpp"
 
 namespace hulltrack {
 

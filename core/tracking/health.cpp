@@ -137,27 +137,27 @@ void check_attitude(const HealthLimits& limits, const Evidence& e, Findings& fin
 
 /// Does the pose follow from the one before? Ends `unique` when the hull was out of sight for too long.
 void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
-  if (!memory.followed) {
+  if (!memory.track.followed) {
     return;
   }
-  const double dt = std::max(0.0, to_seconds(e.time - memory.followed->time));
+  const double dt = std::max(0.0, to_seconds(e.time - memory.track.followed->time));
   const double reach = kFastestHull * dt + kJumpNoise;
   if (reach > kUnseen) {
-    memory.unique = false;
-    memory.followed.reset();
-    memory.motion = MotionRecord{};
+    memory.track.unique = false;
+    memory.track.followed.reset();
+    memory.track.motion = MotionRecord{};
     return;
   }
-  const double jump = (e.displacement - memory.followed->displacement).norm();
-  if (!memory.unique && jump > reach) {  // the search found a better place
-    memory.motion = MotionRecord{};
+  const double jump = (e.displacement - memory.track.followed->displacement).norm();
+  if (!memory.track.unique && jump > reach) {  // the search found a better place
+    memory.track.motion = MotionRecord{};
     return;
   }
   if (jump > reach) {
     findings.add(State::degraded, fault::implausible,
                  format_text("pose jumped by %.2f m in %.1f s, at most %.2f m is possible", jump, dt, reach));
   }
-  const double turn = rotation_angle(memory.followed->rotation.transpose() * e.rotation);
+  const double turn = rotation_angle(memory.track.followed->rotation.transpose() * e.rotation);
   if (turn > kTurnRate * dt + kTurnNoise) {
     findings.add(State::degraded, fault::implausible,
                  format_text("pose turned by %.2f deg in %.1f s", degrees(turn), dt));
@@ -196,7 +196,7 @@ void note_run(HealthMemory& memory, MeasurementTime time, double speed) {
 }
 
 void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTime time, Findings& findings) {
-  if (const auto motion = memory.motion.motion()) {
+  if (const auto motion = memory.track.motion.motion()) {
     if (auto fast = fast_part(limits, *motion)) {
       note_run(memory, time, fast->speed);
       findings.add(State::degraded, fault::implausible, std::move(fast->words));
@@ -214,7 +214,7 @@ void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTi
 
 /// Ends the search when all of the berth was searched and one place is left.
 void check_uniqueness(HealthMemory& memory, const SearchEvidence& search, Findings& findings) {
-  if (memory.unique) {
+  if (memory.track.unique) {
     return;
   }
   if (search.tried < search.starts) {
@@ -226,7 +226,7 @@ void check_uniqueness(HealthMemory& memory, const SearchEvidence& search, Findin
         State::lost, fault::ambiguous,
         format_text("the hull may as well lie at displacement %.1f, %.1f, %.1f m", d.x(), d.y(), d.z()));
   } else if (findings.state == State::tracking) {
-    memory.unique = true;
+    memory.track.unique = true;
   }
 }
 
@@ -246,8 +246,8 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
     check_integrity(e, findings);
     check_continuity(memory, e, findings);
     if (findings.state != State::lost && (findings.faults & fault::implausible) == 0) {
-      memory.followed = HealthMemory::FollowedPose{e.time, e.displacement, e.rotation};
-      memory.motion.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
+      memory.track.followed = FollowedPose{e.time, e.displacement, e.rotation};
+      memory.track.motion.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
     }
     check_envelope(limits, e, findings);
     check_attitude(limits, e, findings);
@@ -277,7 +277,7 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
                              counted(static_cast<std::uint64_t>(memory.good_frames), "good frame").c_str(),
                              limits.health.recover_frames));
   }
-  if (!memory.unique) {
+  if (!memory.track.unique) {
     findings.state = State::acquiring;
   }
   memory.state = findings.state;

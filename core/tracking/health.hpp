@@ -22,20 +22,14 @@
 #include <utility>
 
 #include "core/base/status.hpp"
-#include "core/integrity/machine_finding.hpp"
-#include "core/tracking/integrity.hpp"
-#include "core/tracking/metrics.hpp"
-#include "core/tracking/motion_record.hpp"
+#include "core/integrity/integrity.hpp"
+#include "core/localisation/search_evidence.hpp"
+#include "core/localisation/track.hpp"
+#include "core/sight/metrics.hpp"
 #include "core/tracking/tracker_config.hpp"
+#include "core/witness/machine_finding.hpp"
 
 namespace hulltrack {
-
-/// What the search of the berth says; of interest while a pose does not follow from an earlier one.
-struct SearchEvidence {
-  std::size_t tried = 0;  // starts since the search began
-  std::size_t starts = 0;
-  std::optional<Eigen::Vector3d> rival;  // where the hull might lie as well: displacement, m
-};
 
 /// Everything that one frame says for or against itself.
 struct Evidence {
@@ -58,34 +52,20 @@ struct Evidence {
   SearchEvidence search;
 };
 
-/// A hull that may have moved by more than this unseen is searched for: alignments from starts this far off
-/// still end at the right place, those from several metres on at places of their own.
-inline constexpr double kUnseen = 1.0;  // m
-
-/// Nothing moves a moored hull faster: twice the fastest jerk of a passing ship, a metre within some seconds.
-inline constexpr double kFastestHull = 0.6;  // m/s
-
 /// The longest way on which a moored hull is faster than hull.max_speed: all of the fastest jerk that a
 /// passing ship gives her. One that runs farther is under way, or an encoder stands still while the loader
 /// moves, and nobody can tell which.
 inline constexpr double kLongestRun = 1.0;  // m
 
 struct HealthMemory {
-  struct FollowedPose {
-    MeasurementTime time;
-    Eigen::Vector3d displacement;
-    Eigen::Matrix3d rotation;
-  };
   /// How far some part of the hull has run faster than max_speed, without a pause.
   struct FastRun {
     double length;  // m
     MeasurementTime last;
   };
   State state = State::starting;
-  bool unique = false;                   // the pose follows from one that no other place rivalled
-  int good_frames = 0;                   // in a row
-  std::optional<FollowedPose> followed;  // the last pose that the scan did not contradict
-  MotionRecord motion;                   // of the followed poses
+  Track track;
+  int good_frames = 0;  // in a row
   std::optional<FastRun> run;
   bool ran_away = false;  // farther than kLongestRun, until a re-acquire edge or a quay map's word
 };

@@ -5,16 +5,16 @@
 
 #include "core/base/text.hpp"
 #include "core/geometry/box.hpp"
-#include "core/integrity/joint_motion.hpp"
-#include "core/integrity/machine_witness.hpp"
-#include "core/tracking/expected_distance.hpp"
+#include "core/integrity/integrity.hpp"
+#include "core/localisation/pose_covariance.hpp"
+#include "core/localisation/pose_finder.hpp"
+#include "core/sight/expected_distance.hpp"
+#include "core/sight/nearest_returns.hpp"
+#include "core/sight/scan_view.hpp"
+#include "core/sight/visibility.hpp"
 #include "core/tracking/health.hpp"
-#include "core/tracking/integrity.hpp"
-#include "core/tracking/nearest_returns.hpp"
-#include "core/tracking/pose_covariance.hpp"
-#include "core/tracking/pose_finder.hpp"
-#include "core/tracking/scan_view.hpp"
-#include "core/tracking/visibility.hpp"
+#include "core/witness/joint_motion.hpp"
+#include "core/witness/machine_witness.hpp"
 
 namespace hulltrack {
 namespace {
@@ -68,7 +68,7 @@ struct HullTracker::Impl {
         limits(health_limits(c, half_length(m.get()))),
         map(std::move(m)),
         scan_filter(machine, std::move(sensors), c.hull.region),
-        finder(c, *map),
+        finder(c.hull, c.registration, *map),
         visibility(std::max(Integrity::kSight, c.health.metric_range)),
         machine_witness(c.quay, std::move(quay), machine, c.hull.region, berth_of(*map, c.hull)),
         joint_motion(machine),
@@ -135,7 +135,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
   memory = std::move(next);
-  finder.judged(memory, inputs.reacquire);
+  finder.judged(memory.track, inputs.reacquire);
   result.state = verdict.state;
   result.health = verdict.state == State::tracking;
   result.faults = verdict.faults;
@@ -145,7 +145,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
 }
 
 PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
-  PlaneIcpResult answer = finder.find(filtered.hull_W, result.time, memory);
+  PlaneIcpResult answer = finder.find(filtered.hull_W, result.time, memory.track);
   const IcpResult& icp_result = answer.icp;
   const bool found = icp_result.stop == IcpStop::converged || icp_result.stop == IcpStop::iteration_limit;
   result.registered = found;
@@ -165,11 +165,12 @@ PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult&
 
 /// The hull's motion as its last poses have it, about the reference point.
 HullDrift HullTracker::Impl::drift() const {
-  const auto slope = memory.motion.motion();
-  if (!slope || !memory.followed) {
+  const auto slope = memory.track.motion.motion();
+  if (!slope || !memory.track.followed) {
     return {};
   }
-  return {config.hull.reference_point + memory.followed->displacement, slope->velocity, slope->rpy_rate};
+  return {config.hull.reference_point + memory.track.followed->displacement, slope->velocity,
+          slope->rpy_rate};
 }
 
 /// A point to plane fit asks for no further step; its own covariance says how sure it is.

@@ -14,15 +14,15 @@
 #include "core/filter/scan_filter.hpp"
 #include "core/geometry/scan.hpp"
 #include "core/geometry/se3.hpp"
-#include "core/integrity/machine_doubt.hpp"
-#include "core/integrity/quay_top.hpp"
 #include "core/kinematics/joint_history.hpp"
 #include "core/kinematics/loader_kinematics.hpp"
 #include "core/map/hull_map.hpp"
-#include "core/map/quay_map.hpp"
-#include "core/tracking/metrics.hpp"
+#include "core/quay/quay_map.hpp"
+#include "core/quay/quay_top.hpp"
+#include "core/sight/metrics.hpp"
 #include "core/tracking/motion_products.hpp"
 #include "core/tracking/tracker_config.hpp"
+#include "core/witness/machine_doubt.hpp"
 
 namespace hulltrack {
 

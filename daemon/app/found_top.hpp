@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/integrity/quay_top.hpp"
+#include "core/quay/quay_top.hpp"
 
 namespace hulltrack {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/map/hull_map.hpp"
-#include "core/map/quay_map.hpp"
+#include "core/quay/quay_map.hpp"
 #include "daemon/app/reader_process.hpp"
 #include "daemon/config/read_config.hpp"
 

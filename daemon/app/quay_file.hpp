@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/base/result.hpp"
-#include "core/map/quay_map.hpp"
+#include "core/quay/quay_map.hpp"
 
 namespace hulltrack {
 

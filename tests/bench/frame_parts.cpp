@@ -2,13 +2,13 @@
 
 #include "core/filter/voxel_filter.hpp"
 #include "core/geometry/box.hpp"
+#include "core/integrity/integrity.hpp"
+#include "core/localisation/pose_covariance.hpp"
+#include "core/localisation/pose_finder.hpp"
 #include "core/map/surfels.hpp"
-#include "core/tracking/expected_distance.hpp"
-#include "core/tracking/integrity.hpp"
-#include "core/tracking/nearest_returns.hpp"
-#include "core/tracking/pose_covariance.hpp"
-#include "core/tracking/pose_finder.hpp"
-#include "core/tracking/visibility.hpp"
+#include "core/sight/expected_distance.hpp"
+#include "core/sight/nearest_returns.hpp"
+#include "core/sight/visibility.hpp"
 #include "daemon/app/frame_pipeline.hpp"
 #include "tests/bench/bench_process.hpp"
 #include "tests/bench/stopwatch.hpp"
@@ -17,12 +17,12 @@ namespace hulltrack::bench {
 namespace {
 
 /// As if the frames so far had shown the hull at T_W_H.
-void follow(const Pose& T_W_H, MeasurementTime time, HealthMemory& memory) {
+void follow(const Pose& T_W_H, MeasurementTime time, Track& track) {
   const Eigen::Vector3d reference_H = HullConfig{}.reference_point;
   const Eigen::Vector3d displacement = T_W_H * reference_H - reference_H;
-  memory.unique = true;
-  memory.followed = {time, displacement, T_W_H.linear()};
-  memory.motion.add(time, displacement, rpy_from_rotation(T_W_H.linear()));
+  track.unique = true;
+  track.followed = {time, displacement, T_W_H.linear()};
+  track.motion.add(time, displacement, rpy_from_rotation(T_W_H.linear()));
 }
 
 }  // namespace
@@ -31,11 +31,11 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
   const Config config = config_for(recording);
   const Eigen::Vector3d& reference_H = config.tracker.hull.reference_point;
   const ScanFilter filter(config.machine, sensor_configs(config.lidars), std::nullopt);
-  PoseFinder finder(config.tracker, map);
+  PoseFinder finder(config.tracker.hull, config.tracker.registration, map);
   PointToPlaneIcp icp({}, finder.bend_shape());
   Visibility visibility(std::max(Integrity::kSight, config.tracker.health.metric_range));
   Integrity integrity;
-  HealthMemory memory;
+  Track track;
   FilteredScan filtered;
   std::vector<ScanView> views(1);
   std::vector<VisiblePoint> visible;
@@ -45,9 +45,9 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
   std::vector<double> distances;
   play(recording, [&](const Scan& scan) {
     const MeasurementTime time = scan.mid_time();
-    if (!memory.followed) {
-      follow(recording.T_W_H, time, memory);
-      finder.judged(memory, false);
+    if (!track.followed) {
+      follow(recording.T_W_H, time, track);
+      finder.judged(track, false);
     }
     Stopwatch watch;
     const auto done = [&](const char* part) {
@@ -56,7 +56,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     };
     filter.run(scan, recording.joints, {}, filtered);
     done("filter");
-    const PlaneIcpResult found = finder.find(filtered.hull_W, time, memory);
+    const PlaneIcpResult found = finder.find(filtered.hull_W, time, track);
     done("register");
     const PlaneIcpResult again =
         icp.align(finder.thinned_W(), map.planes(), found.icp.T_target_source, finder.bend());
@@ -91,8 +91,8 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
       finder.settle(rival->start, rival->T_H_W, true);  // the scan contradicts every other place
     }
     done("challenge");
-    follow(T_W_H, time, memory);
-    finder.judged(memory, false);
+    follow(T_W_H, time, track);
+    finder.judged(track, false);
     finder.learn(time, found);
     done("learn");
   });

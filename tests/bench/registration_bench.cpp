@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "core/filter/voxel_filter.hpp"
-#include "core/search/kdtree.hpp"
+#include "core/kdtree/kdtree.hpp"
 #include "tests/bench/bench_process.hpp"
 #include "tests/bench/peers.hpp"
 #include "tests/support/bench_scene.hpp"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/map/hull_map.hpp"
-#include "core/map/quay_map.hpp"
 #include "core/map/stray_points.hpp"
+#include "core/quay/quay_map.hpp"
 #include "core/tracking/map_judge.hpp"
 
 namespace hulltrack::test {

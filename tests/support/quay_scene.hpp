@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/filter/scan_filter.hpp"
-#include "core/integrity/machine_wear.hpp"
-#include "core/tracking/scan_view.hpp"
+#include "core/sight/scan_view.hpp"
+#include "core/witness/machine_wear.hpp"
 
 namespace hulltrack::testing {
 

@@ -274,7 +274,7 @@ TEST(Health, AJumpWhileUniqueTakesHealthUntilThePoseIsBackWhereItCameFrom) {
     const HealthVerdict verdict = machine.step([](Evidence& e) { e.displacement.x() = 0.9; });
     EXPECT_EQ(verdict.state, State::degraded);
     EXPECT_EQ(verdict.faults, fault::implausible);
-    EXPECT_TRUE(machine.memory.unique);
+    EXPECT_TRUE(machine.memory.track.unique);
   }
   machine.run(5);
   EXPECT_EQ(machine.memory.state, State::tracking);
@@ -317,7 +317,7 @@ TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
   for (int i = 0; i < kFramesOutOfSight; ++i) {
     (void)machine.step(elsewhere);
   }
-  EXPECT_FALSE(machine.memory.unique);
+  EXPECT_FALSE(machine.memory.track.unique);
   for (int i = 0; i < 100; ++i) {
     const HealthVerdict verdict = machine.step([](Evidence& e) { e.search = {7, 13, std::nullopt}; });
     ASSERT_EQ(verdict.state, State::acquiring) << i;

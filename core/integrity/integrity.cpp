@@ -1,0 +1,262 @@
+#include "core/integrity/integrity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/localisation/track.hpp"
+#include "core/map/surfels.hpp"
+#include "core/sight/surface_rays.hpp"
+
+namespace hulltrack {
+
+namespace {
+
+using surface_rays::kGrazing;
+using surface_rays::kSameSurface;
+
+constexpr float kHidden = 0.1F;     // m before a surfel: from there on something else was seen
+constexpr float kStepGate = 0.5F;   // m: observations farther off the plane belong to something else
+constexpr float kOnRim = 0.1F;      // m across: what is surely coaming around a rim point
+constexpr float kAlongRim = 0.1F;   // m: half of the distance of rim points
+constexpr float kBelowRim = 0.15F;  // m below its top: down beside it, on its side at least
+constexpr double kBlurred = 0.015;  // m, 1 sigma: three of them are a displaced patch
+constexpr float kRaised = 0.03F;    // m: a rim that may be covered
+constexpr double kOtherPlace = PatchEvidence::kReach;  // m: from there on patches mean other surfaces
+constexpr double kJump = 0.05;                         // m: three sigma of a pose that is worth looking at
+constexpr double kGap = 0.25;  // s: two frames without evidence, on which nothing is booked
+// In a shorter time no ship leaves the berth and another one moors there.
+constexpr double kExchange = 300.0;  // s
+
+/// A rim point in L: upward, and across its strip.
+struct RimAxes {
+  Point p_L, n_L, across_L;
+
+  [[nodiscard]] float across(const Point& q_L) const { return across_L.dot(q_L - p_L); }
+  [[nodiscard]] bool is_beside_rim(const Point& q_L) const {
+    return std::abs(n_L.cross(across_L).dot(q_L - p_L)) < kAlongRim;
+  }
+  [[nodiscard]] bool is_on_rim(const Point& q_L) const {
+    return is_beside_rim(q_L) && std::abs(across(q_L)) < kOnRim;
+  }
+};
+
+/// Calls visit(return, where its ray meets the plane, return's height over it) for the rays around a rim
+/// point.
+template <typename Visit>
+void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
+  const float plane = axes.n_L.dot(axes.p_L);
+  view.visit_around(SphericalGrid::cell(axes.p_L), [&](const Point& ray) {
+    const float down = axes.n_L.dot(ray);
+    if (std::abs(down) > kGrazing * ray.norm()) {
+      visit(ray, Point(plane / down * ray), down - plane);
+    }
+  });
+}
+
+/// Whether another part of the map hides a surfel from the sensor within the tolerance that visibility
+/// leaves: a deck the ship's side below its edge.
+bool is_behind_another(const HullMap& map, const Surfel& surfel, const Point& sensor_H) {
+  const Point to_sensor = (sensor_H - surfel.centre_H).normalized();
+  // Steps of kHidden from twice that on: what is nearer may be the surfel's own surface.
+  for (int step = 2; static_cast<float>(step) * kHidden < Integrity::kBehind + kHidden / 2.0F; ++step) {
+    const Point before = surfel.centre_H + static_cast<float>(step) * kHidden * to_sensor;
+    const auto near = map.tree().nearest(before, kHidden);
+    if (near && std::abs(surfel.normal_H.dot(map.cloud_H()[near->index] - surfel.centre_H)) > kSameSurface) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint> visible, const Pose& T_W_H,
+                               std::span<const ScanView> views) {
+  IntegrityReport report;
+  observations_.clear();
+  looks_.clear();
+  rim_rays_.clear();
+  const std::size_t surfels = map.surfels().size();
+  for (const VisiblePoint& point : visible) {
+    if (point.index < surfels) {
+      look_at_surfel(map, point, T_W_H, views[point.lidar], report);
+    } else {
+      look_at_rim(map.rims()[point.index - surfels], point, T_W_H, views[point.lidar]);
+    }
+  }
+  return report;
+}
+
+void Integrity::weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
+                      const Eigen::Vector3d& reference_W, const BendShape& shape, double bend,
+                      IntegrityReport& report) {
+  if (evidence_.patches() != map.patches().size()) {
+    evidence_.reset(map.patches());
+  }
+  evidence_.begin_frame();
+  if (report.step.solved && report.step.is_finite() &&
+      (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
+    follow_pose(map, time, T_W_H, reference_W);
+    const PlaneStep& step = report.step;
+    collect_evidence({T_W_H, reference_W, step.translation, step.rotation, shape, bend},
+                     step.covariance_translation);
+  }
+  report.patches = evidence_.report();
+}
+
+/// Is the pose where a hull may have come to since evidence was collected last?
+void Integrity::follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
+                            const Eigen::Vector3d& reference_W) {
+  if (weighed_) {
+    const double dt = std::max(0.0, to_seconds(time - weighed_->time));
+    const Eigen::Vector3d moved_W = reference_W - weighed_->reference_W;
+    const double moved = moved_W.norm();
+    const bool jumped = moved > kJump + kFastestHull * std::min(dt, kGap);
+    if (dt > kExchange || (jumped && (dt > kGap || moved > kOtherPlace))) {
+      evidence_.reset(map.patches());
+    } else if (jumped) {
+      evidence_.put_elsewhere((T_W_H.linear().transpose() * moved_W).cast<float>());
+    }
+  }
+  weighed_ = {time, reference_W};
+}
+
+void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,
+                               const ScanView& view, IntegrityReport& report) {
+  const Surfel& surfel = map.surfels()[point.index];
+  if (!surfel.planar || surfel.movable) {
+    return;
+  }
+  const Eigen::Vector3d n_W = T_W_H.linear() * surfel.normal_H.cast<double>();
+  const Point n_L = (view.T_W_L().linear().transpose() * n_W).cast<float>();
+  if (surfel.backed && n_L.dot(point.p_L) > 0.0F) {
+    return;  // its other side, which lies behind another surface
+  }
+  collect_rays(view, point.p_L, n_L, rays_);
+  const RayEnd* nearest = nearest_ray(rays_);
+  if (nearest == nullptr) {
+    return;
+  }
+  if (nearest->depth < -kHidden &&
+      is_behind_another(map, surfel, (T_W_H.inverse() * view.T_W_L().translation()).cast<float>())) {
+    return;
+  }
+  const bool confirmed = std::abs(nearest->offset) <= kPlaneGate;
+  const bool through = !confirmed && nearest->depth > kBehind;
+  ++report.expected;
+  report.confirmed += confirmed ? 1 : 0;
+  report.seen_through += through ? 1 : 0;
+  if (surfel.surface != SurfaceClass::other) {
+    SurfaceCount& count = report.surfaces[static_cast<std::size_t>(surfel.surface)];
+    ++count.expected;
+    count.confirmed += confirmed ? 1 : 0;
+  }
+  if (std::abs(nearest->offset) <= kStepGate) {
+    const Eigen::Vector3d p_W = T_W_H * map.subset_H()[point.index].cast<double>();
+    const auto [offset, weight] = mean_offset(rays_, *nearest);
+    observations_.push_back({p_W, n_W, offset, weight});
+    if (surfel.patch != Surfel::kNoPatch) {
+      looks_.push_back({surfel.patch, observations_.back(), PatchLook::on});
+    }
+  } else if (surfel.patch != Surfel::kNoPatch && through) {
+    looks_.push_back({surfel.patch, {.n_W = n_W}, PatchLook::through});
+  }
+}
+
+void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H,
+                            const ScanView& view) {
+  if (rim.patch == Surfel::kNoPatch) {
+    return;
+  }
+  // Of so small a disc the height is known better than the slope: it is taken to be level.
+  const Eigen::Vector3d n_W = T_W_H.linear() * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d p_W = T_W_H * rim.p_H.cast<double>();
+  const Pose T_L_W = view.T_W_L().inverse();
+  const Point n_L = (T_L_W.linear() * n_W).cast<float>();
+  float raised = 0.0F;
+  const RimAxes axes{point.p_L, n_L, (T_L_W.linear() * T_W_H.linear()).cast<float>() * rim.across_H};
+  const auto on = [&](float offset) {
+    looks_.push_back({rim.patch, {p_W, n_W, static_cast<double>(offset), 1.0}, PatchLook::on});
+    raised = std::max(raised, offset);
+  };
+  look_across(view, axes, [&](const Point& returned, const Point& met, float offset) {
+    // Heights are asked where the returns are: the side of a cover that stands on the rim has all heights.
+    if (std::abs(offset) <= kStepGate && axes.is_on_rim(returned)) {
+      on(offset);
+    } else if (offset < -kStepGate && axes.is_on_rim(met)) {
+      looks_.push_back({rim.patch, {.n_W = n_W}, PatchLook::through});
+    }
+    const bool through = offset < -kBelowRim;
+    const Point& where = through ? met : returned;
+    if (rim.is_measured() && offset < kBelowRim && axes.is_beside_rim(where)) {
+      rim_rays_.push_back({&rim, axes.across(where), offset, through});
+    }
+  });
+  if (raised < kRaised) {
+    return;
+  }
+  const Eigen::Vector3d over_hold_W = T_W_H * rim.over_hold_H.cast<double>();
+  collect_rays(view, (T_L_W * over_hold_W).cast<float>() + raised * n_L, n_L, rays_);
+  if (const RayEnd* beside = nearest_ray(rays_)) {
+    const bool goes_on = std::abs(beside->offset) < kSameSurface;
+    looks_.push_back({rim.patch, {}, goes_on ? PatchLook::goes_on : PatchLook::ends});
+  }
+}
+
+Eigen::Vector3d Integrity::Shift::at(const Eigen::Vector3d& p_W) const {
+  const double x_H = T_W_H.linear().col(0).dot(p_W - T_W_H.translation());
+  return translation + rotation.cross(p_W - reference_W) + bend * shape.rise(x_H) * T_W_H.linear().col(2);
+}
+
+/// The looks of a frame whose pose is right and whose hull is that of the map but for `shift`, which is taken
+/// off.
+void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& covariance_translation) {
+  const Pose& T_W_H = shift.T_W_H;
+  // A direction that the pose's own uncertainty blurs says nothing about the ship.
+  const auto sharp = [&](const Eigen::Vector3d& n_W) {
+    return n_W.dot(covariance_translation * n_W) < kBlurred * kBlurred;
+  };
+  const RimPoint* last = nullptr;
+  bool used = false;
+  float lift = 0.0F;
+  float aside = 0.0F;
+  for (const RimRay& ray : rim_rays_) {
+    if (ray.rim != last) {
+      last = ray.rim;
+      const Eigen::Vector3d moved_H =
+          T_W_H.linear().transpose() * shift.at(T_W_H * ray.rim->p_H.cast<double>());
+      lift = static_cast<float>(moved_H.z());
+      aside = ray.rim->across_H.dot(moved_H.cast<float>());
+      used = sharp(T_W_H.linear() * ray.rim->across_H.cast<double>());
+    }
+    if (!used) {
+      continue;
+    }
+    if (ray.through || std::abs(ray.offset - lift) < kSameSurface) {
+      evidence_.add_across(*ray.rim, ray.s - aside, !ray.through);
+    }
+  }
+  for (const PatchLook& look : looks_) {
+    switch (look.kind) {
+      case PatchLook::on:
+        if (!sharp(look.seen.n_W)) {
+          break;
+        }
+        evidence_.add_offset(look.patch, look.seen.offset - look.seen.n_W.dot(shift.at(look.seen.p_W)),
+                             look.seen.weight);
+        break;
+      case PatchLook::through:
+        if (sharp(look.seen.n_W)) {
+          evidence_.add_through(look.patch);
+        }
+        break;
+      case PatchLook::goes_on:
+      case PatchLook::ends:
+        evidence_.add_beside(look.patch, look.kind == PatchLook::goes_on);
+        break;
+    }
+  }
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,143 @@
+#include "core/base/text.hpp"
+#include "core/integrity/integrity.hpp"
+#include "core/localisation/pose_covariance.hpp"
+
+namespace hulltrack {
+namespace {
+
+// What a healthy pose may be off, at most: 5 cm at the reference point and 0.1 deg. The pose's error is the
+// step that the scan asks for (none after a point to plane fit), give or take kSigmas of its sigma.
+constexpr double kTranslationBudget = 0.05;
+const double kRotationBudget = radians(0.10);
+constexpr double kSigmas = 3.0;
+// When the uncertainty alone takes this share of the budget the geometry, not the pose, is to blame: four
+// sigma within all of it, so that not one healthy frame in ten thousand is beyond.
+constexpr double kShareOfSigma = 0.75;
+
+// At a right pose a surfel is missed only where something was moved or noise is large: nine in ten and more
+// are confirmed. A class that is off by more than kPlaneGate keeps what lies there by chance, less than two
+// in ten. The limit is in the middle.
+constexpr double kLeastShare = 0.5;
+constexpr std::uint32_t kFewestForShare = 20;  // 3 sigma of a share of 0.7 from 20 is 0.3
+
+// Seen through: .02 at rest, .07 and more from a metre on.
+constexpr double kMostSeenThrough = 0.05;
+
+// Fewer confirmed surfels are no ground for a statement on shares: at 40 a share of 0.9 is known to 5 %.
+constexpr std::uint32_t kFewestConfirmed = 40;
+
+// One thing that was moved on deck shows three faces at most. A coaming is not moved: a piece of its top
+// counts twice, and two are enough, since one may have something lying on it. A wall of one that stands
+// behind its place is enough: nothing that is put on board sets it back.
+constexpr std::uint32_t kFewestDisplaced = 4;
+// Of many patches some are judged wrongly, one in a hundred say, and a hatch that is elsewhere shows a tenth.
+constexpr std::uint32_t kSolidPerDisplaced = 20;
+
+// Where the hull really lies, a wrong pose can have more surfels confirmed only by what came on board and
+// happens to be where the map has something fixed: of a class that is off less than two in ten are. Were
+// three quarters of the view such things, the right place would still keep 1 / (1 + 0.2 * 3) of its rival's.
+constexpr double kLeastOfConfirmed = 0.6;
+
+IntegrityFinding judge_step(const PlaneStep& step) {
+  if (!step.solved) {
+    return {fault::unconstrained, "the surfaces in view leave a direction free"};
+  }
+  if (!step.is_finite()) {  // NaN is neither above nor below a limit
+    return {fault::unconstrained, "the step that the scan asks for is no number"};
+  }
+  const double sigma_t = largest_sigma(step.covariance_translation);
+  const double sigma_r = largest_sigma(step.covariance_rotation);
+  if (kSigmas * sigma_t > kShareOfSigma * kTranslationBudget ||
+      kSigmas * sigma_r > kShareOfSigma * kRotationBudget) {
+    return {fault::unconstrained,
+            format_text("the surfaces in view fix the pose to %.3f m and %.3f deg (1 sigma) only", sigma_t,
+                        degrees(sigma_r))};
+  }
+  const Eigen::Vector3d& t = step.translation;
+  if (t.norm() + kSigmas * sigma_t > kTranslationBudget) {
+    return {fault::contradicted, format_text("the scan says the pose is off by %.3f, %.3f, %.3f m in x, y, z",
+                                             t.x(), t.y(), t.z())};
+  }
+  if (step.rotation.norm() + kSigmas * sigma_r > kRotationBudget) {
+    return {fault::contradicted,
+            format_text("the scan says the pose is turned by %.3f deg", degrees(step.rotation.norm()))};
+  }
+  return {};
+}
+
+/// Of structures that disagree as many may be right as wrong.
+bool outnumbers(const StructureCount& count) {
+  return count.displaced > 0 && count.displaced >= count.in_place;
+}
+
+IntegrityFinding judge_surfaces(const IntegrityReport& report) {
+  for (std::size_t i = 0; i < kSurfaceClasses; ++i) {
+    const SurfaceCount& count = report.surfaces[i];
+    if (count.expected >= kFewestForShare && count.share() < kLeastShare) {
+      return {fault::contradicted, format_text("only %.0f %% of %u %s surfaces are where the pose puts them",
+                                               100.0 * count.share(), count.expected,
+                                               surface_class_name(static_cast<SurfaceClass>(i)))};
+    }
+  }
+  const double through = double(report.seen_through) / std::max(1.0, double(report.expected));
+  if (through > kMostSeenThrough) {
+    return {fault::contradicted, format_text("the scan sees through %.0f %% of the hull", 100.0 * through)};
+  }
+  return {};
+}
+
+}  // namespace
+
+IntegrityFinding judge_pose_integrity(const IntegrityReport& report) {
+  IntegrityFinding surfaces = judge_surfaces(report);
+  IntegrityFinding step =
+      report.confirmed < kFewestConfirmed
+          ? IntegrityFinding{fault::unconstrained,
+                             format_text("only %u map surfaces are confirmed by the scan, %u are needed",
+                                         report.confirmed, kFewestConfirmed)}
+          : judge_step(report.step);
+  surfaces.faults |= step.faults;
+  if (surfaces.reason.empty()) {
+    surfaces.reason = std::move(step.reason);
+  }
+  return surfaces;
+}
+
+IntegrityFinding judge_integrity(const IntegrityReport& report) {
+  IntegrityFinding finding = judge_pose_integrity(report);
+  if (finding.faults != 0) {
+    return finding;
+  }
+  const PatchReport& patches = report.patches;
+  const std::uint32_t fewest = std::max(kFewestDisplaced, patches.solid / kSolidPerDisplaced);
+  if (patches.set_back > 0 || patches.displaced + patches.displaced_rims >= fewest) {
+    finding.faults = fault::contradicted;
+    finding.reason = format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere",
+                                 patches.displaced, patches.solid);
+    if (patches.median_offset > 0.0) {
+      finding.reason += format_text(", by %.2f m", patches.median_offset);
+    }
+  } else if (outnumbers(patches.along) || outnumbers(patches.across)) {
+    const bool along = outnumbers(patches.along);
+    const StructureCount& count = along ? patches.along : patches.across;
+    finding.faults = fault::contradicted;
+    finding.reason =
+        format_text("another ship than the map's: %s the ship %u structures stand elsewhere, %u in place",
+                    along ? "along" : "across", count.displaced, count.in_place);
+  } else if (!patches.decided) {
+    finding.undecided = true;
+    finding.reason = format_text(
+        "is it the map's ship? %u of %u surfaces in view are judged; in place are %u structures along the "
+        "ship, %u across, %u tops of coamings",
+        patches.judged, patches.in_view, patches.along.in_place, patches.across.in_place,
+        patches.rims_in_place);
+  }
+  return finding;
+}
+
+bool is_alternative(const IntegrityReport& there, std::uint32_t here) {
+  return (judge_integrity(there).faults & fault::contradicted) == 0 &&
+         double(there.confirmed) >= kLeastOfConfirmed * double(here);
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,256 @@
+#include "core/integrity/patch_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace hulltrack {
+namespace {
+
+// A patch is judged on the last kMemory returns: with 3 cm of noise their median is good to 0.3 cm.
+constexpr float kMemory = 200.0F;
+constexpr double kFewest = 12.0;  // 1.25 * 3 cm / sqrt(12) = 1.1 cm of sigma: a third of kDisplaced
+// Noise of 1.1 cm (three sigma: 3.3 cm) or the bend that a pose does not take out (a parabola of L/1000 of a
+// ship of 120 m bends by 1 cm within 25 m) with the map's 0.5 cm.
+constexpr double kDisplaced = 0.045;  // m
+// One wall that is set back is enough, so its limit is farther: 1.1 cm of noise and the 1.5 cm to which the
+// pose is known at least (integrity.cpp, kBlurred) are 1.9 cm; five sigma. More than half of the rays say so.
+constexpr double kSetBack = 0.1;         // m
+constexpr double kCoherent = 0.075;      // m: 2.5 sigma of a return
+constexpr double kLeastCoherence = 0.8;  // one surface has 0.99; a fifth may meet its edges or things on it
+constexpr double kMostThrough = 0.4;
+constexpr double kMostGoesOn = 0.25;
+
+// A statement about the ship needs most of what is in view, and a second look at what was seen by chance:
+// what a frame of 16 lines leaves out the loader's motion and the noise show in the next ones.
+constexpr std::uint32_t kFramesToDecide = 9;
+constexpr std::uint32_t kFewestToDecide = 8;
+constexpr double kShareToDecide = 0.75;
+constexpr std::uint32_t kFewestStructures = 2;
+
+using Offsets = std::array<float, PatchEvidence::kBins>;
+constexpr double kBin = 2.0 * PatchEvidence::kReach / PatchEvidence::kBins;  // m
+
+double median_offset(const Offsets& offsets, double total) {
+  double below = 0.0;
+  std::size_t middle = 0;
+  while (below + static_cast<double>(offsets[middle]) < 0.5 * total) {
+    below += static_cast<double>(offsets[middle++]);
+  }
+  const double share = (0.5 * total - below) / static_cast<double>(offsets[middle]);
+  return (static_cast<double>(middle) + share) * kBin - PatchEvidence::kReach;
+}
+
+/// Of the bins whose middle lies between.
+double sum_between(const Offsets& offsets, double low, double high) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const double middle = (static_cast<double>(i) + 0.5) * kBin - PatchEvidence::kReach;
+    sum += middle >= low && middle <= high ? static_cast<double>(offsets[i]) : 0.0;
+  }
+  return sum;
+}
+
+}  // namespace
+
+void PatchEvidence::reset(std::vector<MapPatch> mapped) {
+  patches_.assign(mapped.size(), {});
+  verdicts_.assign(mapped.size(), {});
+  mapped_ = std::move(mapped);
+  structures_ = Structures(mapped_);
+  has_rims_ = std::any_of(mapped_.begin(), mapped_.end(),
+                          [](const MapPatch& patch) { return patch.kind == PatchKind::rim; });
+  strips_.clear();
+  frame_ = 0;
+  frames_ = 0;
+  jumps_H_.setZero();
+  decided_ = false;
+}
+
+void PatchEvidence::put_elsewhere(const Point& jump_H) {
+  jumps_H_ += jump_H;
+  strips_.clear();
+  for (Looks& looks : patches_) {
+    looks = {.last_frame = looks.last_frame};
+  }
+}
+
+PatchEvidence::Looks& PatchEvidence::touch(std::uint32_t patch) {
+  Looks& p = patches_[patch];
+  if (p.last_frame != frame_) {
+    p.last_frame = frame_;
+    const float total = std::accumulate(p.offsets.begin(), p.offsets.end(), p.through);
+    if (total > kMemory) {
+      const float keep = kMemory / total;
+      for (float& bin : p.offsets) {
+        bin *= keep;
+      }
+      p.through *= keep;
+      p.goes_on *= keep;
+      p.ends *= keep;
+    }
+  }
+  return p;
+}
+
+void PatchEvidence::add_offset(std::uint32_t patch, double offset, double returns) {
+  const int bin = static_cast<int>((offset + kReach) / (2.0 * kReach) * kBins);
+  touch(patch).offsets[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] +=
+      static_cast<float>(returns);
+}
+
+void PatchEvidence::add_through(std::uint32_t patch) { touch(patch).through += 1.0F; }
+
+void PatchEvidence::add_beside(std::uint32_t patch, bool goes_on) {
+  Looks& p = touch(patch);
+  (goes_on ? p.goes_on : p.ends) += 1.0F;
+}
+
+void PatchEvidence::add_across(const RimPoint& rim, float s, bool on) {
+  Strip& strip = strips_[rim.patch];
+  if (strip.last_frame != frame_) {
+    strip.last_frame = frame_;
+    strip.begin = rim.begin;
+    strip.end = rim.end;
+    strip.evidence.begin_frame();
+  }
+  strip.evidence.add(s, on);
+}
+
+StripEvidence::Finding PatchEvidence::judge_strip(std::uint32_t patch) const {
+  const auto found = strips_.find(patch);
+  return found == strips_.end() ? StripEvidence::Finding{}
+                                : found->second.evidence.judge(found->second.begin, found->second.end);
+}
+
+PatchFinding PatchEvidence::judge(std::uint32_t patch) const {
+  const Looks& p = patches_[patch];
+  const bool is_wall = mapped_[patch].kind == PatchKind::coaming_wall;
+  PatchFinding finding;
+  const double on = std::accumulate(p.offsets.begin(), p.offsets.end(), 0.0);
+  const auto through = static_cast<double>(p.through);
+  finding.returns = on + through;
+  if (finding.returns < kFewest) {
+    return finding;
+  }
+  if (on > 0.0) {
+    finding.offset = median_offset(p.offsets, on);
+    finding.coherence =
+        sum_between(p.offsets, finding.offset - kCoherent, finding.offset + kCoherent) / finding.returns;
+  }
+  if (is_wall && through + sum_between(p.offsets, -kReach, -kSetBack) > 0.5 * finding.returns) {
+    finding.state = PatchState::set_back;
+  } else if (!is_wall && through > kMostThrough * finding.returns) {
+    finding.state = PatchState::gone;
+  } else if (finding.coherence < kLeastCoherence) {
+    finding.state = PatchState::scattered;
+  } else if (std::abs(finding.offset) <= kDisplaced) {
+    finding.state = PatchState::in_place;
+  } else if (finding.offset > 0.0 && p.goes_on > kMostGoesOn * (p.goes_on + p.ends)) {
+    finding.state = PatchState::covered;
+  } else {
+    finding.state = PatchState::displaced;
+  }
+  return finding;
+}
+
+void PatchEvidence::judge_again(std::uint32_t patch) {
+  judge_strip_again(patch);
+  Verdict& verdict = verdicts_[patch];
+  const PatchFinding plane = judge(patch);
+  if (plane.state == PatchState::unknown) {
+    return;  // too few looks: what it was before stands
+  }
+  verdict.jumps_H = jumps_H_;
+  verdict.state = plane.state;
+  if (plane.state == PatchState::displaced || plane.state == PatchState::set_back) {
+    verdict.off_plane = true;
+    verdict.set_back = verdict.set_back || plane.state == PatchState::set_back;
+    verdict.by = static_cast<float>(std::abs(plane.offset));
+  } else if (plane.state == PatchState::gone && mapped_[patch].kind == PatchKind::rim) {
+    verdict.off_plane = true;
+    verdict.by = 0.0F;
+  } else if (plane.state != PatchState::scattered) {
+    verdict.off_plane = false;
+    verdict.set_back = false;
+  }
+}
+
+void PatchEvidence::judge_strip_again(std::uint32_t patch) {
+  Verdict& verdict = verdicts_[patch];
+  const StripEvidence::Finding strip = judge_strip(patch);
+  if (!strip.displaced() && !strip.in_place()) {
+    return;
+  }
+  verdict.strip_jumps_H = jumps_H_;
+  verdict.aside = strip.displaced();
+  verdict.in_line = !verdict.aside;
+  if (verdict.aside) {
+    verdict.by = static_cast<float>(std::abs(strip.shift));
+  }
+}
+
+/// What a patch says about its structure, in the direction that it faces.
+void PatchEvidence::vote(std::uint32_t patch) {
+  const MapPatch& mapped = mapped_[patch];
+  const Verdict& verdict = verdicts_[patch];
+  const bool is_rim = mapped.kind == PatchKind::rim;
+  const bool displaced = is_rim ? verdict.aside : verdict.off_plane;
+  const bool in_place = is_rim ? verdict.in_line : verdict.state == PatchState::in_place;
+  if (mapped.faces != SurfaceClass::other && (displaced || in_place)) {
+    const Point& jumps_H = is_rim ? verdict.strip_jumps_H : verdict.jumps_H;
+    const float since = (jumps_H_ - jumps_H)[static_cast<Eigen::Index>(mapped.faces)];
+    structures_.vote(patch, displaced || std::abs(since) > kDisplaced);
+  }
+}
+
+/// One structure takes the pose along wherever it stands; a second one that is in place too tells, as far as
+/// the map has two. Along the ship, since hatches differ there, and where none is in place what holds the
+/// pose can be moved. A coaming's top in place says that the hatches are as high above the deck as the map's.
+bool PatchEvidence::has_seen_enough(const PatchReport& report) const {
+  return frames_ >= kFramesToDecide && report.judged >= kFewestToDecide &&
+         report.judged >= kShareToDecide * report.in_view && (report.rims_in_place > 0 || !has_rims_) &&
+         report.along.in_place >= std::min(kFewestStructures, structures_.mapped(SurfaceClass::transverse));
+}
+
+PatchReport PatchEvidence::report() {
+  PatchReport report;
+  std::vector<float> offsets;
+  structures_.clear_votes();
+  for (std::uint32_t i = 0; i < patches(); ++i) {
+    const Verdict& verdict = verdicts_[i];
+    if (patches_[i].last_frame == frame_) {
+      judge_again(i);
+      ++report.in_view;
+      report.judged += verdict.state == PatchState::unknown ? 0 : 1;
+    }
+    vote(i);
+    const bool is_rim = mapped_[i].kind == PatchKind::rim;
+    const bool elsewhere = verdict.off_plane || verdict.aside;
+    if (elsewhere) {
+      ++report.displaced;
+      report.displaced_rims += is_rim ? 1 : 0;
+      report.set_back += verdict.set_back ? 1 : 0;
+      if (verdict.by > 0.0F) {
+        offsets.push_back(verdict.by);
+      }
+    }
+    const bool same_height = std::abs((jumps_H_ - verdict.jumps_H).z()) <= static_cast<float>(kDisplaced);
+    report.rims_in_place += is_rim && verdict.state == PatchState::in_place && same_height ? 1 : 0;
+    report.solid += elsewhere || verdict.state == PatchState::in_place ? 1 : 0;
+  }
+  frames_ += report.in_view > 0 ? 1 : 0;
+  report.along = structures_.count(SurfaceClass::transverse);
+  report.across = structures_.count(SurfaceClass::longitudinal);
+  decided_ = decided_ || has_seen_enough(report);
+  report.decided = decided_;
+  if (!offsets.empty()) {
+    const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2);
+    std::nth_element(offsets.begin(), middle, offsets.end());
+    report.median_offset = static_cast<double>(*middle);
+  }
+  return report;
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,88 @@
+#include "core/integrity/strip_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace hulltrack {
+namespace {
+
+constexpr float kMemory = 400.0F;  // rays: 0.1 of them lie within 3 cm of an edge, enough to place it to 1 cm
+constexpr float kFewest = 25.0F;   // rays of either kind
+// An edge is drawn by a beam 3 to 5 cm wide, its mean is good to 1 cm; the pose's own error is taken off to 2
+// cm where the surfaces that hold it are the hatches' own; the map's edges are known to half of its 5 cm
+// voxel.
+constexpr double kDisplaced = 0.06;        // m
+constexpr double kFewestExplained = 25.0;  // rays: five sigma of a count of 25 that ought to be none
+constexpr double kLeastExplained = 0.7;    // of those against: the strip is whole where it is said to be
+constexpr float kFarthest = 0.35F;         // m: farther aside another strip may be meant
+
+}  // namespace
+
+bool StripEvidence::Finding::displaced() const {
+  return known && std::abs(shift) > kDisplaced && explained > kFewestExplained &&
+         explained > kLeastExplained * against;
+}
+
+bool StripEvidence::Finding::in_place() const { return known && std::abs(shift) <= kDisplaced; }
+
+void StripEvidence::begin_frame() {
+  const float total =
+      std::accumulate(on_.begin(), on_.end(), 0.0F) + std::accumulate(through_.begin(), through_.end(), 0.0F);
+  if (total > kMemory) {
+    const float keep = kMemory / total;
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+      on_[i] *= keep;
+      through_[i] *= keep;
+    }
+  }
+}
+
+void StripEvidence::add(float s, bool on) {
+  const int bin = static_cast<int>(std::floor((s + kAside) / kBin));
+  if (bin >= 0 && bin < kBins) {
+    (on ? on_ : through_)[static_cast<std::size_t>(bin)] += 1.0F;
+  }
+}
+
+StripEvidence::Finding StripEvidence::judge(float begin, float end) const {
+  Finding finding;
+  const float on = std::accumulate(on_.begin(), on_.end(), 0.0F);
+  const float through = std::accumulate(through_.begin(), through_.end(), 0.0F);
+  if (on < kFewest || through < kFewest) {
+    return finding;
+  }
+  // balance[i]: rays through minus rays on in the first i bins.
+  std::array<float, kBins + 1> balance{};
+  for (std::size_t i = 0; i < kBins; ++i) {
+    balance[i + 1] = balance[i] + through_[i] - on_[i];
+  }
+  const auto bin = [](float s) { return static_cast<int>(std::lround((s + kAside) / kBin)); };
+  const auto against = [&](int shift) {
+    const auto low = static_cast<std::size_t>(std::clamp(bin(begin) + shift, 0, kBins));
+    const auto high = static_cast<std::size_t>(std::clamp(bin(end) + shift, 0, kBins));
+    return on + balance[high] - balance[low];
+  };
+  float least = std::numeric_limits<float>::max();
+  int first = 0;  // and last of the best shifts
+  int last = 0;
+  const int reach = static_cast<int>(kFarthest / kBin);
+  for (int shift = -reach; shift <= reach; ++shift) {
+    const float contradictions = against(shift);
+    if (contradictions < least - 0.5F) {
+      least = contradictions;
+      first = shift;
+    }
+    if (contradictions < least + 0.5F) {
+      last = shift;
+    }
+  }
+  finding.known = true;
+  finding.shift = 0.5 * static_cast<double>(first + last) * static_cast<double>(kBin);
+  finding.against = static_cast<double>(against(0));
+  finding.explained = finding.against - static_cast<double>(least);
+  return finding;
+}
+
+}  // namespace hulltrack

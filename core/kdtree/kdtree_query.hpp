@@ -1,0 +1,66 @@
+// The searches of the kd-tree, compiled once for every instruction set that they exist for.
+//
+// Every set gives the same bits: the same float operations in the same order, no fused multiply-add.
+// A point's squared distance is (dx * dx + dy * dy) + dz * dz in float; a box's distance is rounded by the
+// same operations and so never exceeds that of a point inside it, which makes pruning exact.
+// Internal to core/search. Thread rule: pure functions on an immutable layout. No failure.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/geometry/cloud.hpp"
+#include "core/kdtree/kdtree.hpp"
+#include "core/kdtree/kdtree_layout.hpp"
+
+namespace hulltrack::kdtree {
+
+inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
+
+/// A point found: where it stands in the layout (or kNoSlot), its squared distance in m^2.
+struct Hit {
+  std::uint32_t slot;
+  float squared_distance;
+};
+
+/// The largest float below radius^2: turns "distance < radius" into the searches' "squared <= limit".
+/// Neighbouring positive floats have neighbouring bit patterns.
+[[nodiscard]] inline float limit_below(float radius) {
+  const float squared = radius * radius;
+  return radius > 0.0F && squared > 0.0F ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(squared) - 1)
+                                         : -1.0F;
+}
+
+/// Takes points of a leaf, one bit each; `where` is the caller's.
+using LeafSink = void (*)(const Leaf& leaf, std::uint32_t points, void* where);
+
+struct Kernels {
+  const char* name;
+
+  /// Per query the nearest point with squared distance <= limit.
+  void (*nearest)(const Layout& layout, std::span<const Point> queries, float limit, Hit* hits);
+
+  /// As KdTree::neighbourhoods.
+  void (*neighbourhoods)(const Layout& layout, std::span<const Point> queries, const float* radii,
+                         float margin, Neighbourhood* out);
+
+  /// The nearest hits.size() points with squared distance <= limit, nearest first, ties by index; returns
+  /// how many there are.
+  std::size_t (*nearest_k)(const Layout& layout, const Point& query, float limit, std::span<Hit> hits);
+
+  /// Gives all points with squared distance <= limit to the sink, leaf by leaf.
+  void (*within)(const Layout& layout, const Point& query, float limit, LeafSink sink, void* where);
+};
+
+[[nodiscard]] const Kernels& sse2_kernels();
+
+/// Must only be called into where avx2_available().
+[[nodiscard]] const Kernels& avx2_kernels();
+[[nodiscard]] bool avx2_available();
+
+/// The fastest kernels that this machine can run.
+[[nodiscard]] const Kernels& best_kernels();
+
+}  // namespace hulltrack::kdtree

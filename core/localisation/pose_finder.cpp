@@ -1,0 +1,264 @@
+#include "core/localisation/pose_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hulltrack {
+namespace {
+
+// Points of a scan that approaches and scores use: at 500 the share that a pose explains has a sigma of 2 %.
+constexpr std::size_t kFew = 500;
+// A scan that leaves fewer points than this is a sparse sensor's, or one in rain: it needs more of them and
+// has the time, since its other steps are quick. A dense sensor leaves some 7,000.
+constexpr std::size_t kSparse = 5000;
+constexpr std::size_t kMostOfSparse = 8000;
+// A scan with fewer points than this on and around the hull is none to search with.
+constexpr std::size_t kFewestForSearch = 100;
+// All starts are aligned in the time that health needs to return anyway.
+constexpr std::size_t kStartsAFrame = 4;
+// A place that explains this share of what the pose explains is examined as closely as the pose itself. Slid
+// along the quay a ship keeps nine tenths of its points on decks and sides, so nearly all that matters.
+constexpr double kRivals = 0.85;
+// A challenger explains this much more: five sigma of the difference of two shares of the same points.
+constexpr double kClearlyBetter = 1.05;
+// Poses nearer than this are what one alignment or another makes of the same place.
+constexpr double kOtherPlace = 1.0;  // m
+// Searched through without a trustworthy pose: the hull has moved on meanwhile, begin again.
+constexpr int kFramesUntilSearchedAgain = 10;
+// As far as an unseen hull is looked for, m.
+constexpr double kFarthestUnseen = 60.0;
+
+// Voxels stand on their corners. Were their faces level, a deck just below one would give each voxel above it
+// a representative too, from the few returns that noise put there: 5 mm and 0.05 deg of error that come and
+// go with the tide. Decks and sides now cut every voxel askew, and what noise moves up it also moves down.
+const Eigen::Matrix3f kAskew =
+    Eigen::Quaternionf::FromTwoVectors(Point::UnitZ(), Point(1.0F, 1.0F, 1.0F)).toRotationMatrix();
+
+// How much more patches of residuals scatter than single ones would: before any frame has told, and how much
+// of a frame's own figure (a dozen per cent off) is believed.
+constexpr double kSharedAtFirst = 2.0;
+constexpr double kSharedGain = 0.1;
+
+// What all residuals of a scan share cannot be seen in them: a beam that falls at a slant, or on an edge, is
+// returned by its nearer part. A fortieth of a return's noise of 2 cm, and as much from one end of the view
+// to the other, 20 m away.
+constexpr double kCommonShift = 0.0005;              // m
+constexpr double kCommonTurn = kCommonShift / 20.0;  // rad
+
+/// All of `cloud`, or one point of each of `most` stretches of it. Not the same of every stretch: in the
+/// order of firing that could be one laser alone.
+void take_evenly(const Cloud& cloud, std::size_t most, Cloud& out) {
+  if (cloud.size() <= most) {
+    out = cloud;
+    return;
+  }
+  out.clear();
+  const double stretch = static_cast<double>(cloud.size()) / static_cast<double>(most);
+  double golden = 0.0;  // multiples of the golden ratio fill 0..1 evenly
+  for (std::size_t i = 0; i < most; ++i) {
+    out.push_back(cloud[static_cast<std::size_t>(stretch * (static_cast<double>(i) + golden))]);
+    golden += std::numbers::phi - 1.0;
+    golden -= std::floor(golden);
+  }
+}
+
+}  // namespace
+
+PoseFinder::PoseFinder(const HullConfig& hull, const RegistrationConfig& registration, const HullMap& map)
+    : hull_(hull),
+      registration_(registration),
+      map_(&map),
+      voxel_filter_(registration.voxel_size),
+      point_icp_({registration.max_correspondence_distance, registration.max_iterations,
+                  registration.translation_epsilon, registration.rotation_epsilon}),
+      bend_shape_{hull.reference_point.x(), map.length()},
+      plane_icp_({.max_iterations = registration.max_iterations}, bend_shape_),
+      search_(hull.reference_point, map),
+      bend_(map.length()),
+      shared_{kSharedAtFirst, kSharedAtFirst} {}
+
+void PoseFinder::thin(const Cloud& hull_W) {
+  if (registration_.method == RegistrationMethod::point_to_point) {
+    voxel_filter_.filter(hull_W, thinned_W_);
+  } else {
+    askew_.clear();
+    for (const Point& p : hull_W) {
+      askew_.push_back(kAskew * p);
+    }
+    thinned_W_.clear();
+    for (const std::uint32_t i : voxel_filter_.select(askew_)) {
+      thinned_W_.push_back(hull_W[i]);
+    }
+  }
+  take_evenly(thinned_W_, kFew, few_W_);
+  is_sparse_ = registration_.method == RegistrationMethod::automatic && thinned_W_.size() < kSparse;
+  if (is_sparse_) {
+    take_evenly(hull_W, kMostOfSparse, thinned_W_);
+  }
+}
+
+PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const Track& track) {
+  thin(hull_W);
+  if (few_W_.size() < kFewestForSearch) {
+    search_is_stale_ = true;
+  } else if (!track.unique) {
+    if (search_is_stale_) {
+      begin_search(time);
+    }
+    search_.advance(few_W_, kStartsAFrame, plane_icp_);
+    frames_searched_ += search_.complete() ? 1 : 0;
+  }
+  // The published method: each frame from the PLC alone (Guo 2025, 2.2).
+  if (registration_.method == RegistrationMethod::point_to_point) {
+    PlaneIcpResult published;
+    published.icp = point_icp_.align(thinned_W_, map_->tree(), Pose::Identity());
+    return published;
+  }
+  return plane_icp_.align(thinned_W_, map_->planes(), best_start(time, track), bend_.now());
+}
+
+void PoseFinder::learn(MeasurementTime time, const PlaneIcpResult& found) {
+  if (!found.icp.converged || !found.covariance.valid) {
+    return;
+  }
+  shared_[is_sparse_] += kSharedGain * (found.covariance.shared - shared_[is_sparse_]);
+  if (found.covariance.bend_sigma > 0.0) {
+    bend_.update(time, found.bend + found.covariance.bend_off, found.covariance.bend_sigma);
+  }
+}
+
+Matrix6 PoseFinder::covariance(const PlaneCovariance& fit) const {
+  const double sigma = bend_.now().sigma;
+  Twist common;
+  common << Eigen::Vector3d::Constant(kCommonTurn), Eigen::Vector3d::Constant(kCommonShift);
+  Matrix6 covariance =
+      std::max(1.0, shared_[is_sparse_]) * fit.pose + sigma * sigma * fit.by_bend * fit.by_bend.transpose();
+  covariance.diagonal() += common.cwiseAbs2();
+  return covariance;
+}
+
+Pose PoseFinder::followed(MeasurementTime time, const Track& track) const {
+  const FollowedPose& last = *track.followed;
+  const MotionRecord::Motion motion = track.motion.motion().value_or(MotionRecord::Motion{});
+  const double dt = std::max(0.0, to_seconds(time - last.time));
+  const Eigen::Vector3d rpy = rpy_from_rotation(last.rotation) + dt * motion.rpy_rate;
+  return pose_about(hull_.reference_point, rotation_from_rpy(rpy), last.displacement + dt * motion.velocity)
+      .inverse();
+}
+
+Pose PoseFinder::best_start(MeasurementTime time, const Track& track) {
+  Pose best = Pose::Identity();
+  double best_score = -1.0;
+  const auto offer = [&](const Pose& T_H_W, double margin) {
+    const double score = search_.score(few_W_, T_H_W, plane_icp_);
+    if (score > margin * best_score) {
+      best = T_H_W;
+      best_score = score;
+    }
+  };
+  if (track.followed) {
+    offer(followed(time, track), 1.0);
+    offer(pose_about(hull_.reference_point, track.followed->rotation, track.followed->displacement).inverse(),
+          1.0);
+  }
+  offer(Pose::Identity(), 1.0);
+  if (challenger_) {
+    const double others = best_score;
+    offer(*challenger_, kClearlyBetter);
+    if (best_score == others) {
+      challenger_.reset();
+    }
+  }
+  if (!track.unique) {
+    for (const HullSearch::Place& place : search_.places()) {
+      if (!place.contradicted) {
+        offer(place.T_H_W, 1.0);
+      }
+    }
+  }
+  return best;
+}
+
+std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
+  if (few_W_.size() < kFewestForSearch) {
+    return std::nullopt;
+  }
+  if (unique_ && challenger_) {
+    challenger_ = T_H_W;  // it won
+    return std::nullopt;
+  }
+  if (unique_) {
+    challenger_ = search_.challenge(few_W_, T_H_W, kClearlyBetter, plane_icp_);
+    return challenger_ ? std::optional(aligned(*challenger_)) : std::nullopt;
+  }
+  const double least = kRivals * search_.score(few_W_, T_H_W, plane_icp_);
+  for (const HullSearch::Place& place : search_.places()) {
+    if (place.score < least) {
+      break;
+    }
+    if (!place.contradicted && !place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
+      return aligned(place.T_H_W);
+    }
+  }
+  return std::nullopt;
+}
+
+PoseFinder::Rival PoseFinder::aligned(const Pose& start) {
+  return {start, plane_icp_.align(thinned_W_, map_->planes(), start, bend_.now()).icp.T_target_source};
+}
+
+void PoseFinder::settle(const Pose& start, const Pose& T_H_W, bool contradicted) {
+  if (!unique_) {
+    search_.settle(start, T_H_W, contradicted);
+  } else if (contradicted) {
+    challenger_.reset();  // it matches more points, but the scan sees through what would be there
+  }
+}
+
+SearchEvidence PoseFinder::evidence(const Pose& T_H_W) const {
+  SearchEvidence evidence{search_.tried(), search_.starts(), std::nullopt};
+  if (search_is_stale_) {
+    evidence = {0, 1, std::nullopt};
+  }
+  const Eigen::Vector3d& reference = hull_.reference_point;
+  for (const HullSearch::Place& place : search_.places()) {
+    if (place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
+      evidence.rival = place.T_H_W.inverse() * reference - reference;
+      break;
+    }
+  }
+  return evidence;
+}
+
+void PoseFinder::judged(const Track& track, bool reacquire) {
+  if (reacquire) {
+    last_seen_.reset();
+  }
+  if (track.followed && track.unique) {
+    last_seen_ = track.followed;
+  }
+  const bool searched_in_vain = !track.unique && frames_searched_ >= kFramesUntilSearchedAgain;
+  if (reacquire || searched_in_vain || (unique_ && !track.unique)) {
+    search_is_stale_ = true;
+    challenger_.reset();
+  }
+  unique_ = track.unique;
+}
+
+void PoseFinder::begin_search(MeasurementTime time) {
+  search_is_stale_ = false;
+  frames_searched_ = 0;
+  Box reach = hull_.envelope;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  if (last_seen_) {
+    const double unseen = std::max(0.0, to_seconds(time - last_seen_->time));
+    const double far = std::min(kFarthestUnseen, kFastestHull * unseen + kUnseen);
+    reach.min.x() = std::min(reach.min.x(), static_cast<float>(last_seen_->displacement.x() - far));
+    reach.max.x() = std::max(reach.max.x(), static_cast<float>(last_seen_->displacement.x() + far));
+    rotation = last_seen_->rotation;
+  }
+  search_.begin(few_W_, reach, rotation);
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,103 @@
+#include "core/quay/misplacement.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/registration/plane_system.hpp"
+
+namespace hulltrack {
+namespace {
+
+// Kernels of the steps, m. A machine within its class shows a quay at most 20 cm off: from there the narrow
+// ones lead to it, and a few returns that something else gave, far away where they turn much, pull little.
+// What they leave unexplained is tried with the wide ones, which reach as far as pairs do.
+constexpr std::array<double, 3> kNarrow = {0.10, 0.05, 0.05};
+constexpr std::array<double, 5> kWide = {0.60, 0.30, 0.10, 0.05, 0.05};
+constexpr double kSettled = 5e-4;    // m: a step that was smaller is not taken again with the same kernel
+constexpr double kAgrees = 0.10;     // m: two kernels, five sigma of a return
+constexpr double kExplained = 0.9;   // of the observations, in place 97 to 99 in 100: no need to look further
+constexpr double kMuchBetter = 1.1;  // times the observations explained: else the machine has its word
+
+double residual(const QuayObservation& o, const Eigen::Vector3d& centre, const Twist& twist) {
+  return o.offset - (o.p_W - centre).cross(o.n_W).dot(twist.head<3>()) - o.n_W.dot(twist.tail<3>());
+}
+
+struct Fit {
+  Twist twist = Twist::Zero();
+  Matrix6 H = Matrix6::Zero();
+  std::uint32_t agreeing = 0;
+};
+
+Fit fit(std::span<const QuayObservation> observations, const Eigen::Vector3d& centre,
+        std::span<const double> kernels) {
+  Fit fit;
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    PlaneSystem system(centre, kernels[i]);
+    for (const QuayObservation& o : observations) {
+      system.add(o.p_W, o.n_W, residual(o, centre, fit.twist));
+    }
+    const Twist step = system.solve().twist;
+    fit.twist -= step;  // the system moves returns onto planes, E the other way
+    fit.H = system.normal_matrix();
+    const bool again = i + 1 < kernels.size() && kernels[i + 1] == kernels[i];
+    if (again && PlaneSystem::kLever * step.head<3>().norm() + step.tail<3>().norm() < kSettled) {
+      break;
+    }
+  }
+  for (const QuayObservation& o : observations) {
+    fit.agreeing += std::abs(residual(o, centre, fit.twist)) <= kAgrees ? 1 : 0;
+  }
+  return fit;
+}
+
+/// One measurement a direction that is held.
+std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
+  // In rotations times kLever and translations, as the system weighs them.
+  Twist scale;
+  scale << Eigen::Vector3d::Constant(PlaneSystem::kLever), Eigen::Vector3d::Ones();
+  const Twist inverse = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(inverse.asDiagonal() * fit.H * inverse.asDiagonal());
+  std::vector<Misplacement::Measurement> measured;
+  for (int i = 0; i < 6; ++i) {
+    const double worth = eigen.eigenvalues()[i];
+    if (worth >= PlaneSystem::kFewestPairs) {
+      const Twist direction = scale.cwiseProduct(eigen.eigenvectors().col(i));
+      const double sigma = std::hypot(PlaneSystem::kInflation * PlaneSystem::kPairSigma / std::sqrt(worth),
+                                      Misplacement::kShared);
+      measured.push_back({direction, direction.dot(fit.twist), sigma});
+    }
+  }
+  return measured;
+}
+
+}  // namespace
+
+bool Misplacement::agrees(const QuayObservation& o) const {
+  return std::abs(residual(o, centre_W, twist)) <= kAgrees;
+}
+
+Misplacement find_misplacement(std::span<const QuayObservation> observations) {
+  Misplacement found;
+  found.observations = static_cast<std::uint32_t>(observations.size());
+  if (observations.empty()) {
+    return found;
+  }
+  for (const QuayObservation& o : observations) {
+    found.centre_W += o.p_W / static_cast<double>(observations.size());
+  }
+  Fit best = fit(observations, found.centre_W, kNarrow);
+  if (best.agreeing < kExplained * double(observations.size())) {
+    const Fit wide = fit(observations, found.centre_W, kWide);
+    if (wide.agreeing > kMuchBetter * best.agreeing) {
+      best = wide;
+    }
+  }
+  found.twist = best.twist;
+  found.agreeing = best.agreeing;
+  found.measured = measurements(best);
+  return found;
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,150 @@
+#include "core/witness/machine_doubt.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/base/text.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr double kNoiseSigmas = 4.0;
+const double kSpread = std::sqrt(3.0);
+
+/// Twists along the measured directions: one column each.
+Eigen::MatrixXd along(const Misplacement& seen, const std::vector<Twist>& twists) {
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(seen.measured.size()),
+                          static_cast<Eigen::Index>(twists.size()));
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+      columns(i, k) =
+          seen.measured[static_cast<std::size_t>(i)].direction.dot(twists[static_cast<std::size_t>(k)]);
+    }
+  }
+  return columns;
+}
+
+/// What was seen, and how it is held against wear: y = G w + noise, along the measured directions.
+struct Weighing {
+  Eigen::VectorXd y, noise;
+  Eigen::MatrixXd G, S_inverse;
+
+  Weighing(Eigen::VectorXd seen, Eigen::VectorXd sigmas, Eigen::MatrixXd wear)
+      : y(std::move(seen)), noise(std::move(sigmas)), G(std::move(wear)) {
+    Eigen::MatrixXd S = G * G.transpose();
+    S.diagonal() += noise.cwiseAbs2();
+    S_inverse = S.ldlt().solve(Eigen::MatrixXd::Identity(y.size(), y.size()));
+  }
+
+  /// How much of `h` there is in y, and how much of that wear can be.
+  [[nodiscard]] JointDoubt doubt_along(const Eigen::VectorXd& h) const {
+    const Eigen::VectorXd weights = S_inverse * h;
+    const double worth = h.dot(weights);
+    if (!(worth > 0.0)) {
+      return {};
+    }
+    const Eigen::VectorXd wear = (G.transpose() * weights).cwiseAbs();
+    const double most_of_wear = std::min(wear.sum(), kSpread * wear.norm());
+    const double most_of_noise = kNoiseSigmas * weights.cwiseProduct(noise).norm();
+    const double z = weights.dot(y);
+    return {z / worth, (most_of_wear + most_of_noise) / worth, z * z / worth};
+  }
+};
+
+/// Where wear hides more than this the joint hardly moves what is seen, and explains it by metres: a quay's
+/// top that slopes a little tells of travel only so. The strain tells then.
+double most_hidden(JointName joint) { return joint == JointName::travel ? 2.0 : radians(5.0); }  // m, rad
+constexpr std::array<double, 6> kMostHiddenOfMount = {1.0, 1.0, 1.0, 0.1, 0.1, 0.1};             // m, rad
+
+}  // namespace
+
+MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
+                           const std::vector<Twist>& of_reference) {
+  MachineDoubt doubt;
+  const auto n = static_cast<Eigen::Index>(seen.measured.size());
+  if (n == 0) {
+    return doubt;
+  }
+  Eigen::VectorXd y(n);
+  Eigen::VectorXd noise(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    y[i] = seen.measured[static_cast<std::size_t>(i)].offset;
+    noise[i] = seen.measured[static_cast<std::size_t>(i)].sigma;
+  }
+  std::vector<Twist> twists = wear_twists(machine, stand, seen.centre_W);
+  twists.insert(twists.end(), of_reference.begin(), of_reference.end());
+  const Weighing weighing(std::move(y), std::move(noise), along(seen, twists));
+  double best = 0.0;
+  for (const JointName joint : kAllJoints) {
+    const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
+    JointDoubt& here = doubt.joints.at(static_cast<std::size_t>(joint));
+    here = weighing.doubt_along(h);
+    if (here.hidden <= most_hidden(joint) && std::abs(here.reads_too_much) > here.hidden &&
+        here.gain > best) {
+      best = here.gain;
+      doubt.accused = joint;
+    }
+  }
+  const std::array<Twist, 6> of_mount = mount_twists(stand, seen.centre_W);
+  for (std::size_t i = 0; i < of_mount.size(); ++i) {
+    const JointDoubt mount = weighing.doubt_along(along(seen, {of_mount[i]}));
+    doubt.mount = doubt.mount ||
+                  (mount.hidden <= kMostHiddenOfMount[i] && std::abs(mount.reads_too_much) > mount.hidden);
+  }
+  doubt.strain = weighing.y.dot(weighing.S_inverse * weighing.y);
+  // Wear that is spread evenly between its limits has a mean square of a third, along every direction that S
+  // whitens; nine times that is three sigma.
+  doubt.most_strain = std::min(static_cast<double>(weighing.G.cols()), 3.0 * static_cast<double>(n));
+  doubt.beyond_class = doubt.accused || doubt.mount || doubt.strain > doubt.most_strain;
+  return doubt;
+}
+
+JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
+                         const Misplacement& at_rest) {
+  const auto n = static_cast<Eigen::Index>(seen.measured.size());
+  const Twist since = seen.twist - at_rest.about(seen.centre_W);
+  double rest_sigma = 0.0;  // the largest: directions of the two differ
+  for (const Misplacement::Measurement& measured : at_rest.measured) {
+    rest_sigma = std::max(rest_sigma, measured.sigma);
+  }
+  Eigen::VectorXd y(n);
+  Eigen::VectorXd noise(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Misplacement::Measurement& measured = seen.measured[static_cast<std::size_t>(i)];
+    y[i] = measured.direction.dot(since);
+    noise[i] = std::hypot(measured.sigma, rest_sigma);
+  }
+  return Weighing(std::move(y), std::move(noise),
+                  along(seen, fast_wear_twists(machine, stand, seen.centre_W)))
+      .doubt_along(along(seen, {lateness_twist(machine, stand, seen.centre_W)}));
+}
+
+std::string accusation(JointName joint, double amount) {
+  const bool turns = joint != JointName::travel;
+  return format_text(
+      "the quay lies as if %s read %.2f %s too %s: its sign, scale, bias or latency, or an encoder "
+      "that stands still?",
+      joint_name(joint), std::abs(turns ? degrees(amount) : amount), turns ? "deg" : "m",
+      amount > 0.0 ? "much" : "little");
+}
+
+std::string describe(const MachineDoubt& doubt, const Misplacement& seen) {
+  if (!doubt.beyond_class) {
+    return {};
+  }
+  if (doubt.accused) {
+    return accusation(*doubt.accused,
+                      doubt.joints.at(static_cast<std::size_t>(*doubt.accused)).reads_too_much);
+  }
+  const Eigen::Vector3d turn = seen.twist.head<3>() * degrees(1.0);
+  const Eigen::Vector3d shift = seen.twist.tail<3>();
+  return format_text(
+      "the quay lies %.2f, %.2f, %.2f m and %.2f, %.2f, %.2f deg from where joints and mount put "
+      "it: a mount, or several joints, are not what is configured",
+      shift.x(), shift.y(), shift.z(), turn.x(), turn.y(), turn.z());
+}
+
+}  // namespace hulltrack

@@ -1,0 +1,318 @@
+#include "core/witness/machine_witness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/text.hpp"
+
+namespace hulltrack {
+namespace {
+
+constexpr int kNeeded = 3;  // frames in a row, to charge and to acquit: one may be wrong about the quay
+
+// As long as observations are kept at 10 Hz, and half as long again for a boom that swings out.
+constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
+
+// Of returns near a plane most are on it; where nothing is in its place a sixth agrees by chance: of offsets
+// spread over the gate those within 10 cm. The limit is in the middle; at 60 returns it is three sigma off
+// either.
+constexpr double kLeastShare = 0.5;
+constexpr std::uint32_t kFewestObservations = 60;
+constexpr std::uint32_t kFewestAsked = kFewestObservations / QuayObserver::kFrames;  // a frame
+// With eight in ten of the returns near planes on them, lorries and people among them, the quay is surely
+// found.
+constexpr double kSureShare = 0.8;
+
+// A plane that is where it should be is seen through only when what stood there has left: a lorry, a stack of
+// covers. Half of a class of surfaces does not leave within a tide. Where all is in place one plane in a
+// hundred is seen through, at an edge: of 12 a half are not.
+constexpr double kMostSeenThrough = 0.5;
+constexpr double kFewestReached = 12.0;
+constexpr std::size_t kRemembered = 100;
+// A top that the session has found may be turned by so many of its sigmas.
+constexpr double kSigmasOfTop = 3.0;
+constexpr const char* kSinceFound = "against where this session found the quay's top, ";
+// Twenty frames, two seconds, are remembered.
+constexpr double kFading = 0.95;
+
+std::optional<QuayPlane> known_top(const QuayConfig& quay) {
+  return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
+}
+
+float extent(const std::deque<Point>& points) {
+  Box box = Box::none();
+  for (const Point& p : points) {
+    box.add(p);
+  }
+  return box.diagonal();
+}
+
+}  // namespace
+
+MachineWitness::MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map,
+                               const MachineConfig& machine, const std::optional<Box>& region_W,
+                               const Box& hull_W)
+    : map_(std::move(map)), machine_(machine), sight_(region_W.has_value()) {
+  if (map_ == nullptr && region_W && quay.top_is_witness) {
+    top_ = known_top(quay);
+    if (!top_) {
+      learner_.emplace(hull_W, machine.slew.translation().y());
+    }
+  }
+}
+
+MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& scan,
+                                    std::span<const ScanView> views, const MachineStand& stand,
+                                    bool on_trial) {
+  if (!has_quay()) {
+    return {};
+  }
+  if (last_look_ && time - *last_look_ > JointHistory::kMaxGap) {
+    forget_sight();  // the joints may be others by now
+  }
+  last_look_ = time;
+  const QuaySighting* sighting = sighting_of(scan, views, stand, on_trial);
+  if (sighting == nullptr) {
+    return {};
+  }
+  remember(*sighting);
+  seen_ = find_misplacement(sighting->observed->all);
+  Verdict verdict = judge(stand);
+  bool confirmed = false;
+  const MachineCharge* asked = charges_.next_joint();
+  if (map_ != nullptr) {
+    search_.see(*map_, sight_.returns_W(), *sighting->observed, machine_, stand, charges_.any());
+    weigh_other_places(stand, asked, verdict);
+    confirmed = verdict.known && !verdict.charge && seen_.holds_all();
+    for (const JointName joint : kAllJoints) {
+      const bool finds_large = search_.would_find(joint);
+      verdict.doubt.joints.at(static_cast<std::size_t>(joint)).finds_large = finds_large;
+      confirmed = confirmed && finds_large;
+    }
+  }
+  note_rest(time, stand, verdict);
+  if (verdict.known) {
+    charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : 0;
+    clean_in_a_row_ = verdict.charge ? 0 : clean_in_a_row_ + 1;
+  }
+  if (verdict.charge && charges_in_a_row_ >= kNeeded) {
+    charges_.add(*verdict.charge);
+  } else if (verdict.known && clean_in_a_row_ >= kNeeded) {
+    acquit(verdict, asked);
+  }
+  return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
+}
+
+/// Null while there is no top to look for yet.
+const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
+                                                const MachineStand& stand, bool on_trial) {
+  if (map_ != nullptr) {
+    return &sight_.look_for(*map_, scan, views);
+  }
+  if (top_) {
+    return &sight_.look_for(*top_, scan);
+  }
+  if (const auto& top = learner_->top()) {
+    const QuaySighting& sighting = sight_.look_for(top->seen.plane, scan, &top->seen.area_W);
+    // What it is charged with was seen against this top: it is kept until it is acquitted. So is one of which
+    // the place is in view, and it is not there.
+    learner_->seen(charges_.any() || sighting.asked >= kFewestAsked);
+    return &sighting;
+  }
+  if (on_trial) {
+    learner_->drop_gathered();
+  } else {
+    learner_->add(sight_.returns_of(scan), stand);
+  }
+  return nullptr;
+}
+
+/// A top that a worn machine has found is off by as much as that machine was.
+std::vector<Twist> MachineWitness::doubt_of_reference() const {
+  if (!learner_ || !learner_->top()) {
+    return {};
+  }
+  const TopLearner::Top& top = *learner_->top();
+  std::vector<Twist> twists = wear_twists(machine_, top.stand, seen_.centre_W);
+  for (int i = 0; i < 2; ++i) {
+    Twist tilt = Twist::Zero();
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
+    tilt << axis, axis.cross(seen_.centre_W - top.seen.middle_W);
+    twists.push_back(kSigmasOfTop * top.seen.sigma_slope * tilt);
+  }
+  return twists;
+}
+
+MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
+  Verdict verdict;
+  const bool few = seen_.observations < kFewestObservations || seen_.measured.empty();
+  const double agreeing = double(seen_.agreeing) / std::max(1.0, double(seen_.observations));
+  const bool found = !few && agreeing >= kLeastShare;
+  if (found) {
+    verdict.doubt = doubt_machine(machine_, stand, seen_, doubt_of_reference());
+  }
+  // A quay that is found in its place on all axes is in its place: what is seen through has left.
+  const bool surely_in_place =
+      found && !verdict.doubt.beyond_class && seen_.holds_all() && agreeing >= kSureShare;
+  std::string through = surely_in_place ? std::string{} : seen_through();
+  verdict.known = found || !through.empty();
+  if (!through.empty()) {
+    verdict.charge = MachineCharge{std::move(through), std::nullopt, 0.0, Misplacement::kDirections};
+  } else if (found && verdict.doubt.beyond_class) {
+    verdict.charge = charge_by(verdict.doubt, seen_);
+  } else if (found) {
+    verdict.charge = charge_of_lateness(stand);
+  }
+  return verdict;
+}
+
+/// Joint values that come late put the machine where it was, but only while it moves.
+std::optional<MachineCharge> MachineWitness::charge_of_lateness(const MachineStand& stand) const {
+  if (!at_rest_ || !seen_.holds_all()) {
+    return std::nullopt;
+  }
+  const JointDoubt late = doubt_latency(machine_, stand, seen_, *at_rest_);
+  if (!(std::abs(late.reads_too_much) > late.hidden)) {
+    return std::nullopt;
+  }
+  return MachineCharge{
+      format_text("the quay moves with the machine as if joint values were %.0f ms %s than plc.latency_ms "
+                  "says",
+                  1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
+      std::nullopt, 0.0, Misplacement::kDirections};
+}
+
+MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplacement& seen) const {
+  const auto& joint = doubt.accused;
+  return {(learner_ ? kSinceFound : "") + describe(doubt, seen), joint,
+          joint ? doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0,
+          seen.measured.size()};
+}
+
+/// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
+/// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
+/// of there then, of the better one.
+void MachineWitness::weigh_other_places(const MachineStand& stand, const MachineCharge* asked,
+                                        Verdict& verdict) {
+  const auto elsewhere = search_.look(*map_, machine_);
+  std::optional<Verdict> of_elsewhere = elsewhere ? judge(stand, *elsewhere) : std::nullopt;
+  if (asked != nullptr) {
+    const QuaySearch::There there = search_.look_there(*map_, machine_, *asked->joint, asked->amount);
+    verdict.refutes_asked = there.refuted;
+    if (of_elsewhere && elsewhere->surplus > there.surplus) {
+      verdict = std::move(*of_elsewhere);
+      return;
+    }
+    const MachineDoubt doubt = doubt_machine(machine_, stand, there.seen);
+    if (doubt.beyond_class) {
+      verdict = {.known = true, .charge = charge_by(doubt, there.seen), .doubt = doubt};
+      return;
+    }
+    // Too little may be in view to tell: then only what else this frame shows to be wrong counts.
+    if (!there.worse &&
+        doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
+      verdict.known = verdict.charge.has_value();
+      return;
+    }
+  }
+  if (of_elsewhere) {
+    verdict = std::move(*of_elsewhere);
+  }
+}
+
+/// What a guess that is better comes to, if to a charge: by the planes that are met there, or by the guess
+/// alone once it has lasted and no planes tell of the joint.
+std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand& stand,
+                                                             const QuaySearch::Elsewhere& elsewhere) const {
+  const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere.seen);
+  if (doubt.beyond_class) {
+    return Verdict{.known = true, .charge = charge_by(doubt, elsewhere.seen), .doubt = doubt};
+  }
+  const MachineGuess& guess = elsewhere.guess;
+  if (elsewhere.lasting && guess.joint && guess.beyond_wear &&
+      doubt.joints.at(static_cast<std::size_t>(*guess.joint)).hidden >= std::abs(guess.amount)) {
+    return Verdict{.known = true, .charge = charge_by(guess, elsewhere.seen), .doubt = doubt};
+  }
+  return std::nullopt;
+}
+
+/// Where no planes tell of the joint, the things that are met there do.
+MachineCharge MachineWitness::charge_by(const MachineGuess& guess, const Misplacement& seen) {
+  return {accusation(*guess.joint, guess.amount), guess.joint, guess.amount, seen.measured.size()};
+}
+
+/// A sight of the quay is of a machine that stands once all of its observations are.
+void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict) {
+  const Eigen::Vector3d rate(stand.rate.d_x, stand.rate.theta_r, stand.rate.theta_p);
+  if ((rate.cwiseAbs().array() > kStandsBelow.array()).any()) {
+    standing_since_.reset();
+    return;
+  }
+  standing_since_ = standing_since_.value_or(time);
+  if (time - *standing_since_ >= kAtRest && verdict.known && !verdict.charge && seen_.holds_all()) {
+    at_rest_ = seen_;
+  }
+}
+
+/// Of what this frame would have shown, and does not. `asked`: the joint's charge that was held against it.
+void MachineWitness::acquit(const Verdict& verdict, const MachineCharge* asked) {
+  if (asked != nullptr &&
+      (verdict.refutes_asked ||
+       verdict.doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden < std::abs(asked->amount))) {
+    charges_.drop(asked->joint);
+  }
+  const MachineCharge* nameless = charges_.without_joint();
+  if (nameless != nullptr && seen_.measured.size() >= nameless->directions) {
+    charges_.drop(std::nullopt);
+  }
+}
+
+void MachineWitness::remember(const QuaySighting& sighting) {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    planes_[i].reached = kFading * planes_[i].reached + sighting.planes[i].reached;
+    const Cloud& through_W = sighting.planes[i].seen_through_W;
+    planes_[i].seen_through = kFading * planes_[i].seen_through + double(through_W.size());
+    std::deque<Point>& where_W = planes_[i].where_W;
+    where_W.insert(where_W.end(), through_W.begin(), through_W.end());
+    where_W.erase(where_W.begin(),
+                  where_W.end() - static_cast<std::ptrdiff_t>(std::min(where_W.size(), kRemembered)));
+  }
+}
+
+/// In words, if rays go through where the quay should be.
+std::string MachineWitness::seen_through() const {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const Memory& of_class = planes_[i];
+    if (of_class.reached >= kFewestReached && of_class.seen_through > kMostSeenThrough * of_class.reached &&
+        extent(of_class.where_W) > QuaySearch::kLongestThing) {
+      return format_text(
+          "the scan sees through %.0f %% of the quay's %s surfaces where joints and mount put them",
+          100.0 * of_class.seen_through / of_class.reached, surface_class_name(static_cast<SurfaceClass>(i)));
+    }
+  }
+  return {};
+}
+
+void MachineWitness::forget_sight() {
+  standing_since_.reset();
+  at_rest_.reset();
+  sight_.forget();
+  search_.forget();
+  if (learner_) {
+    learner_->drop_gathered();
+  }
+  planes_ = {};
+  charges_in_a_row_ = 0;
+  clean_in_a_row_ = 0;
+}
+
+void MachineWitness::forget() {
+  forget_sight();
+  charges_.drop_all();
+  if (learner_) {
+    learner_->forget();
+  }
+}
+
+}  // namespace hulltrack
