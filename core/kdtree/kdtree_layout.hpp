@@ -3,7 +3,7 @@
 // A node keeps the boxes of up to 16 children side by side, so that one or two vector operations a plane test
 // all of them; siblings are contiguous, so that one index addresses them. All leaves lie at the same
 // depth and hold up to 32 points. Unused lanes are at infinity and never match.
-// Internal to core/search. Immutable once built; see kdtree_build.hpp and kdtree_query.hpp.
+// Internal to core/kdtree. Immutable once built; see kdtree_build.hpp and kdtree_query.hpp.
 #pragma once
 
 #include <cstddef>

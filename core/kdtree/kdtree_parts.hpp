@@ -1,6 +1,6 @@
 // What the builders of the kd-tree share: points on their way into it, tight boxes, leaves and nodes.
 //
-// Internal to core/search. Unused lanes are at infinity: no query is near them.
+// Internal to core/kdtree. Unused lanes are at infinity: no query is near them.
 #pragma once
 
 #include <immintrin.h>

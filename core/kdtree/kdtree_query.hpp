@@ -3,7 +3,7 @@
 // Every set gives the same bits: the same float operations in the same order, no fused multiply-add.
 // A point's squared distance is (dx * dx + dy * dy) + dz * dz in float; a box's distance is rounded by the
 // same operations and so never exceeds that of a point inside it, which makes pruning exact.
-// Internal to core/search. Thread rule: pure functions on an immutable layout. No failure.
+// Internal to core/kdtree. Thread rule: pure functions on an immutable layout. No failure.
 #pragma once
 
 #include <bit>
