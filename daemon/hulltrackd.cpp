@@ -14,14 +14,14 @@
 #include <string>
 
 #include "core/base/text.hpp"
-#include "daemon/app/live_time.hpp"
-#include "daemon/app/preparer.hpp"
-#include "daemon/app/reader.hpp"
-#include "daemon/app/reload_desk.hpp"
-#include "daemon/app/service.hpp"
-#include "daemon/app/signals.hpp"
-#include "daemon/app/syslog_sink.hpp"
 #include "daemon/config/read_config.hpp"
+#include "daemon/log/syslog_sink.hpp"
+#include "daemon/pipeline/live_time.hpp"
+#include "daemon/service/preparer.hpp"
+#include "daemon/service/reader.hpp"
+#include "daemon/service/reload_desk.hpp"
+#include "daemon/service/service.hpp"
+#include "daemon/service/signals.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {

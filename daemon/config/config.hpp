@@ -10,19 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "core/base/log.hpp"
 #include "core/kinematics/loader_kinematics.hpp"
 #include "core/tracking/tracker_config.hpp"
+#include "daemon/log/log_config.hpp"
 #include "lidar_drivers/lidar_config.hpp"
 #include "plc/plc_config.hpp"
 
 namespace hulltrack {
-
-struct LogConfig {
-  std::string ident = "hulltrackd";
-  std::string facility = "daemon";  // daemon, local0 .. local7
-  LogLevel level = LogLevel::info;  // lines below it are not written
-};
 
 struct Config {
   PlcConfig plc;

@@ -3,6 +3,7 @@
 #include "daemon/config/key_factories.hpp"
 #include "daemon/config/net_names.hpp"
 #include "daemon/config/words.hpp"
+#include "daemon/log/log_config.hpp"
 
 namespace hulltrack {
 namespace {

@@ -1,12 +1,11 @@
-// The words that stand for enumerators in the configuration, one list for each enumeration.
+// The words that stand for enumerators in the configuration, one list for each enumeration; those of
+// the log are its own (daemon/log/log_config.hpp).
 //
 // In the order of the enumerators, so that an enumerator's value is its word's index.
 #pragma once
 
 #include <array>
 #include <string_view>
-
-#include "core/base/log.hpp"
 
 namespace hulltrack {
 
@@ -17,13 +16,5 @@ inline constexpr std::array<std::string_view, 2> kWriteEncodingWords = {"float32
 inline constexpr std::array<std::string_view, 2> kTimeSourceWords = {"receive", "sensor"};
 inline constexpr std::array<std::string_view, 2> kFramingWords = {"period", "revolution"};
 inline constexpr std::array<std::string_view, 2> kMethodWords = {"auto", "point_to_point"};
-inline constexpr std::array<std::string_view, 9> kFacilityWords = {
-    "daemon", "local0", "local1", "local2", "local3", "local4", "local5", "local6", "local7"};
-inline constexpr std::array<std::string_view, 5> kLogLevelWords = {"debug", "info", "notice", "warning",
-                                                                   "err"};
-
-[[nodiscard]] constexpr std::string_view log_level_name(LogLevel level) {
-  return kLogLevelWords[static_cast<std::size_t>(level)];
-}
 
 }  // namespace hulltrack

@@ -7,15 +7,15 @@
 #include <string>
 
 #include "core/io/plc_csv.hpp"
-#include "daemon/app/frame_pipeline.hpp"
-#include "daemon/app/load_map.hpp"
-#include "daemon/app/quay_file.hpp"
 #include "daemon/config/read_config.hpp"
-#include "daemon/tools/csv_file.hpp"
-#include "daemon/tools/frame_csv.hpp"
-#include "daemon/tools/joint_csv.hpp"
-#include "daemon/tools/recording_player.hpp"
-#include "daemon/tools/replay_summary.hpp"
+#include "daemon/pipeline/frame_pipeline.hpp"
+#include "daemon/pipeline/load_map.hpp"
+#include "daemon/pipeline/quay_file.hpp"
+#include "daemon/replay/csv_file.hpp"
+#include "daemon/replay/frame_csv.hpp"
+#include "daemon/replay/joint_csv.hpp"
+#include "daemon/replay/recording_player.hpp"
+#include "daemon/replay/replay_summary.hpp"
 #include "daemon/tools/tools.hpp"
 #include "lidar_drivers/model_registry.hpp"
 

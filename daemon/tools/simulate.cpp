@@ -10,10 +10,10 @@
 #include <optional>
 #include <string>
 
-#include "daemon/simulator/live_run.hpp"
-#include "daemon/simulator/recording.hpp"
-#include "daemon/simulator/simulated_berth.hpp"
-#include "daemon/simulator/site_config.hpp"
+#include "daemon/simulator/run/live_run.hpp"
+#include "daemon/simulator/run/recording.hpp"
+#include "daemon/simulator/run/simulated_berth.hpp"
+#include "daemon/simulator/run/site_config.hpp"
 #include "daemon/tools/tools.hpp"
 
 namespace hulltrack {

@@ -9,7 +9,7 @@
 #include "core/sight/expected_distance.hpp"
 #include "core/sight/nearest_returns.hpp"
 #include "core/sight/visibility.hpp"
-#include "daemon/app/frame_pipeline.hpp"
+#include "daemon/config/conversions.hpp"
 #include "tests/bench/bench_process.hpp"
 #include "tests/bench/stopwatch.hpp"
 

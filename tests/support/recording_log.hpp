@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/log.hpp"
+#include "daemon/log/log.hpp"
 
 namespace hulltrack {
 

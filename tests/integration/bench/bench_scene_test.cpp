@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "daemon/app/frame_pipeline.hpp"
+#include "daemon/pipeline/frame_pipeline.hpp"
 #include "tests/support/bench_scene.hpp"
 #include "tests/support/frame_recording.hpp"
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/kinematics/joint_history.hpp"
-#include "daemon/app/plc_reading.hpp"
+#include "daemon/pipeline/plc_reading.hpp"
 #include "tests/integration/plc/plc_bench_setup.hpp"
 
 namespace hulltrack {

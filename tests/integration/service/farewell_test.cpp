@@ -1,5 +1,5 @@
 // The last write of a service: what it does to reach the PLC, and what is said when it does not.
-#include "daemon/app/farewell.hpp"
+#include "daemon/service/farewell.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/app/preparer.hpp"
+#include "daemon/service/preparer.hpp"
 #include "plc/sim/plc_server.hpp"
 #include "tests/support/room_lidar.hpp"
 

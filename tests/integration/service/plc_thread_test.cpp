@@ -1,5 +1,5 @@
 // The plc thread alone, with a tracker that this test plays: what the registers say must not depend on it.
-#include "daemon/app/plc_thread.hpp"
+#include "daemon/service/plc_thread.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 #include <thread>
 
-#include "daemon/app/guarded_thread.hpp"
-#include "daemon/app/live_time.hpp"
+#include "daemon/pipeline/live_time.hpp"
+#include "daemon/threads/guarded_thread.hpp"
 #include "tests/integration/service/loader_bench.hpp"
 #include "tests/support/recording_log.hpp"
 

@@ -1,5 +1,5 @@
 // Files are read by a process of their own: what they do to it, and what this process has of them.
-#include "daemon/app/preparer.hpp"
+#include "daemon/service/preparer.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@
 #include <system_error>
 
 #include "core/io/pcd_writer.hpp"
-#include "daemon/app/live_time.hpp"
+#include "daemon/pipeline/live_time.hpp"
 #include "lidar_drivers/model_registry.hpp"
 #include "tests/support/room_lidar.hpp"
 #include "tests/support/temp_folder.hpp"

@@ -11,7 +11,7 @@
 #include <future>
 
 #include "core/io/pcd_writer.hpp"
-#include "daemon/app/service.hpp"
+#include "daemon/service/service.hpp"
 #include "tests/integration/service/loader_bench.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/temp_folder.hpp"

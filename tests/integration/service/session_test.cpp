@@ -1,5 +1,5 @@
 // The service's threads against a PLC and a LiDAR on loopback, in this process.
-#include "daemon/app/session.hpp"
+#include "daemon/service/session.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "daemon/app/farewell.hpp"
+#include "daemon/service/farewell.hpp"
 #include "tests/integration/service/loader_bench.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/recording_log.hpp"

@@ -1,13 +1,13 @@
 // The track thread alone: this test plays rx and plc, and says when scans and joint samples come.
-#include "daemon/app/track_thread.hpp"
+#include "daemon/service/track_thread.hpp"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <thread>
 
-#include "daemon/app/guarded_thread.hpp"
-#include "daemon/app/live_time.hpp"
+#include "daemon/pipeline/live_time.hpp"
+#include "daemon/threads/guarded_thread.hpp"
 #include "tests/integration/service/loader_bench.hpp"
 
 namespace hulltrack {

@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
-#include "daemon/tools/frame_csv.hpp"
-#include "daemon/tools/joint_csv.hpp"
-#include "daemon/tools/reason_table.hpp"
-#include "daemon/tools/replay_summary.hpp"
+#include "daemon/replay/frame_csv.hpp"
+#include "daemon/replay/joint_csv.hpp"
+#include "daemon/replay/reason_table.hpp"
+#include "daemon/replay/replay_summary.hpp"
 
 namespace hulltrack {
 namespace {
