@@ -1,16 +1,15 @@
 #include "core/base/text.hpp"
+#include "core/geometry/health_contract.hpp"
 #include "core/integrity/integrity.hpp"
 #include "core/localisation/pose_covariance.hpp"
 
 namespace hulltrack {
 namespace {
 
-// What a healthy pose may be off, at most: 5 cm at the reference point and 0.1 deg. The pose's error is the
-// step that the scan asks for (none after a point to plane fit), give or take kSigmas of its sigma.
-constexpr double kTranslationBudget = 0.05;
-const double kRotationBudget = radians(0.10);
+// The pose's error is the step that the scan asks for (none after a point to plane fit), give or take so many
+// of its sigmas: all of it has to be within the contract.
 constexpr double kSigmas = 3.0;
-// When the uncertainty alone takes this share of the budget the geometry, not the pose, is to blame: four
+// When the uncertainty alone takes this share of the contract the geometry, not the pose, is to blame: four
 // sigma within all of it, so that not one healthy frame in ten thousand is beyond.
 constexpr double kShareOfSigma = 0.75;
 
@@ -47,18 +46,18 @@ IntegrityFinding judge_step(const PlaneStep& step) {
   }
   const double sigma_t = largest_sigma(step.covariance_translation);
   const double sigma_r = largest_sigma(step.covariance_rotation);
-  if (kSigmas * sigma_t > kShareOfSigma * kTranslationBudget ||
-      kSigmas * sigma_r > kShareOfSigma * kRotationBudget) {
+  if (kSigmas * sigma_t > kShareOfSigma * HealthContract::kPosition ||
+      kSigmas * sigma_r > kShareOfSigma * HealthContract::kAttitude) {
     return {fault::unconstrained,
             format_text("the surfaces in view fix the pose to %.3f m and %.3f deg (1 sigma) only", sigma_t,
                         degrees(sigma_r))};
   }
   const Eigen::Vector3d& t = step.translation;
-  if (t.norm() + kSigmas * sigma_t > kTranslationBudget) {
+  if (t.norm() + kSigmas * sigma_t > HealthContract::kPosition) {
     return {fault::contradicted, format_text("the scan says the pose is off by %.3f, %.3f, %.3f m in x, y, z",
                                              t.x(), t.y(), t.z())};
   }
-  if (step.rotation.norm() + kSigmas * sigma_r > kRotationBudget) {
+  if (step.rotation.norm() + kSigmas * sigma_r > HealthContract::kAttitude) {
     return {fault::contradicted,
             format_text("the scan says the pose is turned by %.3f deg", degrees(step.rotation.norm()))};
   }

@@ -14,7 +14,7 @@
 #include <deque>
 #include <optional>
 
-#include "core/geometry/se3.hpp"
+#include "core/geometry/health_contract.hpp"
 #include "core/kinematics/joints.hpp"
 
 namespace hulltrack {
@@ -26,8 +26,9 @@ using JointValues = std::array<double, 3>;
   return {joints.d_x, joints.theta_r, joints.theta_p};
 }
 
-/// Half of what health 1 promises (ICD 3.1), m and rad.
-inline constexpr JointValues kHalfContract{0.025, radians(0.05), radians(0.05)};
+/// Half of what health 1 promises, m and rad.
+inline constexpr JointValues kHalfContract{HealthContract::kPosition / 2, HealthContract::kAttitude / 2,
+                                           HealthContract::kAttitude / 2};
 
 /// No machine speeds up or brakes faster, m/s^2 and rad/s^2: wet steel on rails carries .15 g and about two
 /// thirds of the wheels have brakes, so .1 g, five times what drives do; as much at the tip of a short boom

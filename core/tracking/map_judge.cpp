@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "core/geometry/health_contract.hpp"
 #include "core/registration/plane_covariance.hpp"
 #include "core/registration/plane_system.hpp"
 
 namespace hulltrack {
 namespace {
 
-// The contract (ICD 3.1): a pose is right to so much.
-constexpr double kPosition = 0.05;  // m
-const double kAttitude = radians(0.1);
+constexpr double kPosition = HealthContract::kPosition;
+constexpr double kAttitude = HealthContract::kAttitude;
 
 // The longest ship that ever was measured 458 m. What is longer is in another unit, or more than a ship.
 constexpr double kLongestHull = 500.0;  // m

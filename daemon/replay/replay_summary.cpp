@@ -6,6 +6,7 @@
 
 #include "core/base/percentile.hpp"
 #include "core/base/text.hpp"
+#include "core/geometry/health_contract.hpp"
 #include "daemon/pipeline/found_top.hpp"
 
 namespace hulltrack {
@@ -172,11 +173,13 @@ std::string ReplaySummary::errors_text() const {
   std::vector<double> error;
   std::vector<double> turn;
   std::size_t wrong = 0;
+  std::size_t gross = 0;
   for (const Frame& f : frames_) {
     if (healthy(f.state) && f.error >= 0.0) {
       error.push_back(f.error);
       turn.push_back(f.turn_deg);
-      wrong += f.error > kHealthyError || f.turn_deg > kHealthyTurnDeg ? 1 : 0;
+      wrong += f.error > HealthContract::kPosition || radians(f.turn_deg) > HealthContract::kAttitude ? 1 : 0;
+      gross += f.error > kGrossError || f.turn_deg > kGrossTurnDeg ? 1 : 0;
     }
   }
   std::string text =
@@ -184,14 +187,16 @@ std::string ReplaySummary::errors_text() const {
                   root_mean_square(error), percentile(error, 0.99), largest(error), error.size());
   text += format_text("rotation    RMS %.3f deg, 99 %% %.3f deg, max %.3f deg\n", root_mean_square(turn),
                       percentile(turn, 0.99), largest(turn));
-  text += format_text("wrong       %zu healthy frames off by more than %.2f m or %.1f deg\n", wrong,
-                      kHealthyError, kHealthyTurnDeg);
+  text += format_text(
+      "wrong       %zu healthy frames off by more than %.2f m or %.1f deg; gross, %.2f m or %.1f deg: %zu\n",
+      wrong, HealthContract::kPosition, degrees(HealthContract::kAttitude), kGrossError, kGrossTurnDeg,
+      gross);
   return text;
 }
 
 std::string ReplaySummary::reaction_text() const {
   const auto crossing = std::find_if(frames_.begin(), frames_.end(),
-                                     [](const Frame& f) { return f.moving || f.error > kHealthyError; });
+                                     [](const Frame& f) { return f.moving || f.error > kGrossError; });
   if (crossing == frames_.end()) {
     return "reaction    the hull never passed max_speed, no pose was off by more than 0.10 m\n";
   }

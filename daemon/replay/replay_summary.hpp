@@ -16,9 +16,9 @@
 
 namespace hulltrack {
 
-/// Error limits of a pose that may be called healthy.
-inline constexpr double kHealthyError = 0.10;   // m
-inline constexpr double kHealthyTurnDeg = 0.3;  // deg
+/// An error beyond these is no bad luck with noise, whatever the ship does.
+inline constexpr double kGrossError = 0.10;   // m
+inline constexpr double kGrossTurnDeg = 0.3;  // deg
 
 /// Displacement and rotation of the truth at `t`, or nothing outside its table.
 [[nodiscard]] std::optional<TruthRow> truth_at(const std::vector<TruthRow>& truth, std::int64_t t_ns);

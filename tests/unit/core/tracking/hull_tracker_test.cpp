@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "core/geometry/health_contract.hpp"
 #include "tests/support/analytic_ship.hpp"
 
 namespace hulltrack {
@@ -162,7 +163,8 @@ TEST(HullTracker, FindsAHullThatLiesElsewhereAndIsNeverHealthyOffIt) {
     bool believed = false;
     for (int i = 0; i < kFramesToBelieve && !believed; ++i) {
       const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
-      const bool right = error(result, T_W_H) < 0.05 && turn_error(result, T_W_H) < radians(0.1);
+      const bool right = error(result, T_W_H) < HealthContract::kPosition &&
+                         turn_error(result, T_W_H) < HealthContract::kAttitude;
       found = found || right;
       believed = result.health;
       EXPECT_TRUE(!believed || right)
@@ -188,7 +190,8 @@ TEST(HullTracker, FindsAHullThatMovedByMetresUnseenAndIsNeverHealthyOffIt) {
     bool believed = false;
     for (int i = 0; i < kFramesToFind; ++i) {
       const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
-      const bool right = error(result, T_W_H) < 0.05 && turn_error(result, T_W_H) < radians(0.1);
+      const bool right = error(result, T_W_H) < HealthContract::kPosition &&
+                         turn_error(result, T_W_H) < HealthContract::kAttitude;
       found = found || right;
       believed = result.health;
       EXPECT_TRUE(right || !result.health)
@@ -222,7 +225,7 @@ TEST(HullTracker, LosesAHullThatDepartsInAnyDirection) {
       const double t = 0.1 * i;
       const Pose T_W_H = displaced(0.5 * 0.1 * t * t * direction);  // 0.1 m/s^2
       const TrackResult result = track.step(&track.ship(), {.T_W_H = T_W_H});
-      ASSERT_TRUE(!result.health || error(result, T_W_H) < 0.10)
+      ASSERT_TRUE(!result.health || error(result, T_W_H) < HealthContract::kPosition)
           << direction.transpose() << " at " << t << " s";
       ASSERT_TRUE(!result.health || 0.1 * t < 0.3 + 0.1 * 0.5) << "0.5 s after passing max_speed";
     }

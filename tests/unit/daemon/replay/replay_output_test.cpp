@@ -171,7 +171,11 @@ TEST(ReplaySummary, CountsWrongHealthyFramesAndTheReaction) {
   EXPECT_THAT(text, HasSubstr("frames      60"));
   EXPECT_THAT(text, HasSubstr("tracking 35 lost 25"));
   EXPECT_THAT(text, HasSubstr("max 0.225 m of 35 healthy frames"));
-  EXPECT_THAT(text, HasSubstr("3 healthy frames off by more than 0.10 m")) << text;  // 0.125, 0.175, 0.225
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "wrong       4 healthy frames off by more than 0.05 m or 0.1 deg; gross, 0.10 m or 0.3 deg: 3\n"))
+      << text;  // 0.075, 0.125, 0.175, 0.225
   EXPECT_THAT(text, HasSubstr("frame 32: the pose is off by 0.10 m; health 0 after 0.3 s")) << text;
   EXPECT_THAT(text, HasSubstr("median 2.0 ms"));
   EXPECT_EQ(summary.text(false).find(" ms"), std::string::npos);
