@@ -25,7 +25,8 @@ struct MeasurementClock {
 using MeasurementTime = MeasurementClock::time_point;
 using SteadyTime = std::chrono::time_point<std::chrono::steady_clock, Nanoseconds>;
 
-/// Wall clock (UTC) as the kernel stamps datagrams. Converted at the edge, never stored.
+/// Wall clock (UTC) as the kernel stamps datagrams and sensors count. Converted at the edge: nothing that
+/// measures or waits reckons with it.
 using WallTime = std::chrono::time_point<std::chrono::system_clock, Nanoseconds>;
 
 [[nodiscard]] constexpr MeasurementTime measurement_time_from_ns(std::int64_t ns) {

@@ -48,7 +48,7 @@ struct SurfelObservation {
 
 /// A least squares step of observations: the pose's remaining error as the scan sees it.
 struct PlaneStep {
-  bool solved = false;                                    // false: fewer than six independent observations
+  bool solved = false;                                    // false: too few observations, or a direction free
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // of the reference point, W, m
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     // rad
   Eigen::Matrix3d covariance_translation = Eigen::Matrix3d::Zero();  // of the reference point

@@ -10,7 +10,7 @@ namespace {
 
 // A patch is judged on the last kMemory returns: with 3 cm of noise their median is good to 0.3 cm.
 constexpr float kMemory = 200.0F;
-constexpr double kFewest = 12.0;  // 1.25 * 3 cm / sqrt(12) = 1.1 cm of sigma: a third of kDisplaced
+constexpr double kFewest = 12.0;  // 1.25 * 3 cm / sqrt(12) = 1.1 cm of sigma: a quarter of kDisplaced
 // Noise of 1.1 cm (three sigma: 3.3 cm) or the bend that a pose does not take out (a parabola of L/1000 of a
 // ship of 120 m bends by 1 cm within 25 m) with the map's 0.5 cm.
 constexpr double kDisplaced = 0.045;  // m

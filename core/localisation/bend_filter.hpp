@@ -21,7 +21,8 @@ class BendFilter {
   explicit BendFilter(double length) : bend_{0.0, length / 1000.0}, widest_(bend_.sigma) {}
 
   static constexpr double kShared = 10.0;
-  /// A hold filled in a quarter of an hour bends a hull by decimetres: m / sqrt(s).
+  /// How fast the estimate of before loses its worth: each second adds this, squared, to its variance. Over a
+  /// quarter of an hour, in which a hold can be filled, that is a sigma of 3 cm. m / sqrt(s)
   static constexpr double kWander = 0.001;
 
   [[nodiscard]] const Bend& now() const { return bend_; }

@@ -35,8 +35,9 @@ class PoseFinder {
   /// covariance.
   [[nodiscard]] PlaneIcpResult find(const Cloud& hull_W, MeasurementTime time, const Track& track);
 
-  /// While the place is not unique: another place that explains the scan about as well as T_H_W and has not
-  /// been examined yet, aligned with all of the scan.
+  /// The place to examine beside T_H_W in this frame, aligned with all of the scan. While T_H_W is not
+  /// unique: the next one of the search that explains the scan about as well. Afterwards: a challenger, if
+  /// one stretch of the berth, another each frame, has a place that explains clearly more.
   struct Rival {
     Pose start;  // T_H_W, the place
     Pose T_H_W;  // what aligning it led to

@@ -1,7 +1,7 @@
 // Which cells of space does the mapped hull occupy, and how many points of a cloud would lie in them if the
 // cloud were shifted by whole cells?
 //
-// Cells of kCell in H: worth 2 with a plane of the map in it, 1 beside such a cell (a shift is off by up to
+// Cells of kCell in H: worth 2 with a point of the map in it, 1 beside such a cell (a shift is off by up to
 // half a cell, a hull by its turn). Height is the fastest index, so that one look at a column of cells
 // answers for all vertical shifts at once. Kept in blocks of kSide x kSide columns, only where the map is.
 // Frame H, metres, within 100 km of the origin. Immutable. No failure: points outside count nothing.

@@ -1,8 +1,8 @@
 // Normals, flatness and classes of chosen map points, from the map around them.
 //
-// Frame H, metres. Principal component analysis of the neighbours within kRadius. A point is planar if
-// its neighbours lie on a plane (RMS kFlat), spread to both sides of it in every direction, and their
-// centroid is near it, which it is not beside an edge. Cost: about 1 us a point of a 5 cm map (kd-tree, 3x3
+// Frame H, metres. Principal component analysis of the neighbours within kSurfelRadius. A point is planar
+// if its neighbours lie on a plane, spread in both directions of it, and their centroid is near the point,
+// which it is not beside an edge. Cost: about 1 us a point of a 5 cm map (kd-tree, 3x3
 // solver).
 #pragma once
 

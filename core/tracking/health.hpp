@@ -5,15 +5,19 @@
 //   held       the PLC does not want tracking
 //   fault      no joints bracket the scan, or PLC data stale: nothing was registered
 //   tracking   every check passed, now and (unless tracking already) in recover_frames frames in a row
-//   degraded   a pose, but: Q1 above its limit for tracking, not converged, not constrained, implausible,
-//              joint values on trial, or recovering
-//   lost       no pose to trust: none found, too few matches, Q1 above its limit for lost, contradicted
-//              by the scan
+//   degraded   a pose, but: Q1 above its limit for tracking, not converged, not constrained, a jump or a
+//              speed that a moored hull does not have, a machine that its witnesses contradict, joint values
+//              on trial, a LiDAR silent or disputed, or recovering
+//   lost       no pose to trust: none found, too few matches, Q1 above its limit for lost, contradicted by
+//   the
+//              scan, outside hull.envelope, tilted or turned beyond hull.max_heel, max_trim or max_yaw, or of
+//              a hull that ran away
 //   acquiring  instead of degraded and lost while the hull has to be searched for
 // A scan may look the same one hatch farther along the quay, so a pose is believed only if it follows from an
 // earlier one without a gap in which the hull could have moved by kUnseen, or if the whole berth was searched
 // since and no other place explains the scan as well. A hull that ran away (kLongestRun) is not believed
-// again before a person has looked: a re-acquire edge. Metres, radians. The pose's age is the publisher's
+// again before a person has looked, a re-acquire edge, or a map of the quay has confirmed all joints. Metres,
+// radians. The pose's age is the publisher's
 // business.
 #pragma once
 

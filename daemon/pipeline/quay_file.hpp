@@ -1,7 +1,7 @@
 // The quay's map from its file, and whether it can be a witness: `[quay] map`.
 //
 // Not judged as a hull. Failure: Error with one line that names the file. Cost: as long as the file takes to
-// read, and 2 us a plane. Thread rule: pure but for the file.
+// read, and 5 us a plane. Thread rule: pure but for the file.
 #pragma once
 
 #include <filesystem>

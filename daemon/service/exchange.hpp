@@ -54,7 +54,7 @@ struct Exchange {
   Mailbox<PlcView> plc;           // plc puts, track gets
   Mailbox<FrameDone> frame;       // track puts, plc gets
   Mailbox<WriteBlock> registers;  // plc puts, main gets
-  EventBits events;               // rx and track raise, plc collects
+  EventBits events;               // rx raises, plc collects
   FigureBoard figures;            // all add, main takes
   /// No session, and none is being started: set before the plc thread runs.
   std::atomic<bool> out_of_service = false;
