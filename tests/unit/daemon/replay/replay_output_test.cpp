@@ -199,7 +199,7 @@ TEST(ReplaySummary, ReasonsStandBehindTheStates) {
   summary.add(r, 1.0);
   summary.add(result(1, 0.0, State::tracking), 1.0);
   EXPECT_THAT(summary.text(false),
-              HasSubstr("50.00 %\nhealth 0     50.00 %, first in frame 0: Q1 is 0.31 m\nQ1  "));
+              HasSubstr(" %\nhealth 0     50.00 %, first in frame 0: Q1 is 0.31 m\nQ1  "));
 }
 
 TEST(ReasonTable, ReasonsThatDifferInTheirFiguresAreOneKind) {
