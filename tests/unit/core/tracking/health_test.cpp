@@ -362,6 +362,36 @@ TEST(Health, JumpMayGrowWithTheTimeSinceTheLastPoseThatWasFollowed) {
   EXPECT_EQ(machine.step(moved).faults & fault::implausible, 0);
 }
 
+/// The reason after a pose that is `metres` along and `deg` of roll away, `unseen` frames after the last one.
+std::string after_a_gap(int unseen, double metres, double deg) {
+  Machine machine = tracking_machine();
+  for (int i = 0; i < unseen; ++i) {
+    (void)machine.step([](Evidence& e) { e.metrics.q1 = 0.3; });
+  }
+  return machine
+      .step([&](Evidence& e) {
+        e.displacement.x() = metres;
+        e.rotation = Eigen::AngleAxisd(radians(deg), Eigen::Vector3d::UnitX()).toRotationMatrix();
+      })
+      .reason;
+}
+
+TEST(Health, AJumpIsWhatErrorsAndTheFastestHullDoNotExplainTogether) {
+  // 0.1 m, and 0.6 m/s for as long as nobody saw her.
+  for (const auto& [unseen, farthest] : {std::pair{0, 0.16}, std::pair{10, 0.76}}) {
+    EXPECT_EQ(after_a_gap(unseen, farthest - 0.01, 0.0).find("jumped"), std::string::npos) << unseen;
+    EXPECT_NE(after_a_gap(unseen, farthest + 0.01, 0.0).find("jumped"), std::string::npos) << unseen;
+  }
+}
+
+TEST(Health, ATurnIsWhatErrorsAndTheSwellDoNotExplainTogether) {
+  // 0.3 deg, and 1 deg/s.
+  for (const auto& [unseen, farthest] : {std::pair{0, 0.4}, std::pair{10, 1.4}}) {
+    EXPECT_EQ(after_a_gap(unseen, 0.0, farthest - 0.02).find("turned"), std::string::npos) << unseen;
+    EXPECT_NE(after_a_gap(unseen, 0.0, farthest + 0.02).find("turned"), std::string::npos) << unseen;
+  }
+}
+
 TEST(Health, SteadySpeedAboveTheLimitTakesHealth) {
   for (const double speed : {0.25, 0.35}) {
     Machine machine = tracking_machine();

@@ -102,6 +102,13 @@ TEST(Publication, HealthFallsWithAgeWhateverTheTrackerSaid) {
   EXPECT_EQ(b.state, State::degraded);
 }
 
+TEST(Publication, APoseFromTheFutureIsNoFresherThanAnOldOne) {
+  Publication publication(milliseconds(500));
+  publication.frame(healthy_frame(kStart, 7, 0.1), kStart, {});
+  EXPECT_TRUE(publication.block({}, kStart - milliseconds(500)).health);
+  EXPECT_FALSE(publication.block({}, kStart - milliseconds(501)).health);
+}
+
 TEST(Publication, AnotherConfigurationKeepsThePoseAndTheFramesRise) {
   Publication publication(milliseconds(500));
   publication.frame(healthy_frame(kStart, 7, 0.1), kStart, {});
