@@ -18,22 +18,24 @@ std::string MachineCharges::reason() const {
 }
 
 void MachineCharges::add(const MachineCharge& charge) {
-  newest_ = slot(charge.joint);
+  newest_ = slot(charge);
   slots_.at(newest_) = charge;
 }
 
-const MachineCharge* MachineCharges::next_joint() {
+std::optional<WrongJoint> MachineCharges::next_joint() {
   for (std::size_t i = 0; i < kAllJoints.size(); ++i) {
     asked_ = (asked_ + 1) % kAllJoints.size();
     if (slots_.at(asked_)) {
-      return &*slots_.at(asked_);
+      return std::get<WrongJoint>(slots_.at(asked_)->what);
     }
   }
-  return nullptr;
+  return std::nullopt;
 }
 
-const MachineCharge* MachineCharges::without_joint() const {
-  return slots_.at(kAllJoints.size()) ? &*slots_.at(kAllJoints.size()) : nullptr;
+std::size_t MachineCharges::slot(const MachineCharge& charge) {
+  const auto* of_joint = std::get_if<WrongJoint>(&charge.what);
+  return of_joint != nullptr ? static_cast<std::size_t>(of_joint->joint)
+                             : kAllJoints.size() + charge.what.index() - 1;
 }
 
 }  // namespace hulltrack

@@ -54,6 +54,21 @@ struct Weighing {
   }
 };
 
+/// All that is measured, held against wear and what else may be wrong. Precondition: something is measured.
+Weighing weigh(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
+               const std::vector<Twist>& of_reference) {
+  const auto n = static_cast<Eigen::Index>(seen.measured.size());
+  Eigen::VectorXd y(n);
+  Eigen::VectorXd noise(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    y[i] = seen.measured[static_cast<std::size_t>(i)].offset;
+    noise[i] = seen.measured[static_cast<std::size_t>(i)].sigma;
+  }
+  std::vector<Twist> twists = wear_twists(machine, stand, seen.centre_W);
+  twists.insert(twists.end(), of_reference.begin(), of_reference.end());
+  return {std::move(y), std::move(noise), along(seen, twists)};
+}
+
 /// Where wear hides more than this the joint hardly moves what is seen, and explains it by metres: a quay's
 /// top that slopes a little tells of travel only so. The strain tells then.
 double most_hidden(JointName joint) { return joint == JointName::travel ? 2.0 : radians(5.0); }  // m, rad
@@ -64,19 +79,10 @@ constexpr std::array<double, 6> kMostHiddenOfMount = {1.0, 1.0, 1.0, 0.1, 0.1, 0
 MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
                            const std::vector<Twist>& of_reference) {
   MachineDoubt doubt;
-  const auto n = static_cast<Eigen::Index>(seen.measured.size());
-  if (n == 0) {
+  if (seen.measured.empty()) {
     return doubt;
   }
-  Eigen::VectorXd y(n);
-  Eigen::VectorXd noise(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    y[i] = seen.measured[static_cast<std::size_t>(i)].offset;
-    noise[i] = seen.measured[static_cast<std::size_t>(i)].sigma;
-  }
-  std::vector<Twist> twists = wear_twists(machine, stand, seen.centre_W);
-  twists.insert(twists.end(), of_reference.begin(), of_reference.end());
-  const Weighing weighing(std::move(y), std::move(noise), along(seen, twists));
+  const Weighing weighing = weigh(machine, stand, seen, of_reference);
   double best = 0.0;
   for (const JointName joint : kAllJoints) {
     const Eigen::VectorXd h = along(seen, {joint_twist(machine, stand, joint, seen.centre_W)});
@@ -97,9 +103,16 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
   doubt.strain = weighing.y.dot(weighing.S_inverse * weighing.y);
   // Wear that is spread evenly between its limits has a mean square of a third, along every direction that S
   // whitens; nine times that is three sigma.
-  doubt.most_strain = std::min(static_cast<double>(weighing.G.cols()), 3.0 * static_cast<double>(n));
+  doubt.most_strain =
+      std::min(static_cast<double>(weighing.G.cols()), 3.0 * static_cast<double>(weighing.y.size()));
   doubt.beyond_class = doubt.accused || doubt.mount || doubt.strain > doubt.most_strain;
   return doubt;
+}
+
+JointDoubt doubt_twist(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
+                       const Twist& twist, const std::vector<Twist>& of_reference) {
+  return seen.measured.empty() ? JointDoubt{}
+                               : weigh(machine, stand, seen, of_reference).doubt_along(along(seen, {twist}));
 }
 
 JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,

@@ -53,6 +53,12 @@ struct MachineDoubt {
 [[nodiscard]] JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand,
                                        const Misplacement& seen, const Misplacement& at_rest);
 
+/// How much there is of a twist about seen.centre_W, and how much of it wear within the class hides, in units
+/// of that twist.
+[[nodiscard]] JointDoubt doubt_twist(const MachineConfig& machine, const MachineStand& stand,
+                                     const Misplacement& seen, const Twist& twist,
+                                     const std::vector<Twist>& of_reference = {});
+
 /// In words with figures, why a joint is accused: it reads `amount` (m, rad) too much.
 [[nodiscard]] std::string accusation(JointName joint, double amount);
 

@@ -40,6 +40,12 @@ Axes axes_of(const MachineConfig& machine, const Joints& joints) {
   return {T_W_slew, T_W_slew * Eigen::AngleAxisd(joints.theta_r, Eigen::Vector3d::UnitZ()) * machine.luff};
 }
 
+/// The boom's own axes in W, as columns.
+Eigen::Matrix3d boom_axes(const MachineConfig& machine, const Joints& joints) {
+  return axes_of(machine, joints).T_W_luff.linear() *
+         Eigen::AngleAxisd(joints.theta_p, Eigen::Vector3d::UnitY()).toRotationMatrix();
+}
+
 }  // namespace
 
 const char* joint_name(JointName joint) {
@@ -76,6 +82,14 @@ std::array<Twist, 6> mount_twists(const MachineStand& stand, const Eigen::Vector
     twists[static_cast<std::size_t>(i) + 3] = about(axis, stand.sensor_W, centre_W);
   }
   return twists;
+}
+
+Twist carried_by_boom(const MachineConfig& machine, const MachineStand& then, const MachineStand& now,
+                      const Twist& off) {
+  const Eigen::Matrix3d turned = boom_axes(machine, now.joints) * boom_axes(machine, then.joints).transpose();
+  Twist carried;
+  carried << turned * off.head<3>(), turned * off.tail<3>();
+  return carried;
 }
 
 std::vector<Twist> fast_wear_twists(const MachineConfig& machine, const MachineStand& stand,

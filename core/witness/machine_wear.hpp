@@ -38,6 +38,11 @@ struct MachineStand {
 /// turned by a radian about one.
 [[nodiscard]] std::array<Twist, 6> mount_twists(const MachineStand& stand, const Eigen::Vector3d& centre_W);
 
+/// How a sensor that was off by a twist about its place as the machine stood `then` is off about its place
+/// `now`, if the boom carries what is wrong with it.
+[[nodiscard]] Twist carried_by_boom(const MachineConfig& machine, const MachineStand& then,
+                                    const MachineStand& now, const Twist& off);
+
 /// All that wear within the class can do, each term at its limit: twists about `centre_W`.
 [[nodiscard]] std::vector<Twist> wear_twists(const MachineConfig& machine, const MachineStand& stand,
                                              const Eigen::Vector3d& centre_W);

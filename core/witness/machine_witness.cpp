@@ -40,6 +40,12 @@ std::optional<QuayPlane> known_top(const QuayConfig& quay) {
   return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
 }
 
+/// Whether a sight would have shown what was charged, and shows less than half of it: then nothing of it is
+/// nearer to what is seen than all of it. `left`: in units of what was charged.
+bool refutes(const JointDoubt& left, double charged = 1.0) {
+  return left.hidden < std::abs(charged) && left.reads_too_much / charged < 0.5;
+}
+
 float extent(const std::deque<Point>& points) {
   Box box = Box::none();
   for (const Point& p : points) {
@@ -80,7 +86,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   seen_ = find_misplacement(sighting->observed->all);
   Verdict verdict = judge(stand);
   bool confirmed = false;
-  const MachineCharge* asked = charges_.next_joint();
+  const std::optional<WrongJoint> asked = charges_.next_joint();
   if (map_ != nullptr) {
     search_.see(*map_, sight_.returns_W(), *sighting->observed, machine_, stand, charges_.any());
     weigh_other_places(stand, asked, verdict);
@@ -99,7 +105,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   if (verdict.charge && charges_in_a_row_ >= kNeeded) {
     charges_.add(*verdict.charge);
   } else if (verdict.known && clean_in_a_row_ >= kNeeded) {
-    acquit(verdict, asked);
+    acquit(stand, verdict, asked);
   }
   return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
 }
@@ -158,9 +164,9 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   std::string through = surely_in_place ? std::string{} : seen_through();
   verdict.known = found || !through.empty();
   if (!through.empty()) {
-    verdict.charge = MachineCharge{std::move(through), std::nullopt, 0.0, Misplacement::kDirections};
+    verdict.charge = MachineCharge{std::move(through), WrongAltogether{}};
   } else if (found && verdict.doubt.beyond_class) {
-    verdict.charge = charge_by(verdict.doubt, seen_);
+    verdict.charge = charge_by(stand, verdict.doubt, seen_);
   } else if (found) {
     verdict.charge = charge_of_lateness(stand);
   }
@@ -180,25 +186,29 @@ std::optional<MachineCharge> MachineWitness::charge_of_lateness(const MachineSta
       format_text("the quay moves with the machine as if joint values were %.0f ms %s than plc.latency_ms "
                   "says",
                   1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
-      std::nullopt, 0.0, Misplacement::kDirections};
+      WrongLatency{late.reads_too_much}};
 }
 
-MachineCharge MachineWitness::charge_by(const MachineDoubt& doubt, const Misplacement& seen) const {
-  const auto& joint = doubt.accused;
-  return {(learner_ ? kSinceFound : "") + describe(doubt, seen), joint,
-          joint ? doubt.joints.at(static_cast<std::size_t>(*joint)).reads_too_much : 0.0,
-          seen.measured.size()};
+MachineCharge MachineWitness::charge_by(const MachineStand& stand, const MachineDoubt& doubt,
+                                        const Misplacement& seen) const {
+  MachineCharge charge{(learner_ ? kSinceFound : "") + describe(doubt, seen),
+                       WrongPlace{stand, seen.about(stand.sensor_W)}};
+  if (doubt.accused) {
+    charge.what =
+        WrongJoint{*doubt.accused, doubt.joints.at(static_cast<std::size_t>(*doubt.accused)).reads_too_much};
+  }
+  return charge;
 }
 
 /// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
 /// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
 /// of there then, of the better one.
-void MachineWitness::weigh_other_places(const MachineStand& stand, const MachineCharge* asked,
+void MachineWitness::weigh_other_places(const MachineStand& stand, const std::optional<WrongJoint>& asked,
                                         Verdict& verdict) {
   const auto elsewhere = search_.look(*map_, machine_);
   std::optional<Verdict> of_elsewhere = elsewhere ? judge(stand, *elsewhere) : std::nullopt;
-  if (asked != nullptr) {
-    const QuaySearch::There there = search_.look_there(*map_, machine_, *asked->joint, asked->amount);
+  if (asked) {
+    const QuaySearch::There there = search_.look_there(*map_, machine_, asked->joint, asked->amount);
     verdict.refutes_asked = there.refuted;
     if (of_elsewhere && elsewhere->surplus > there.surplus) {
       verdict = std::move(*of_elsewhere);
@@ -206,12 +216,12 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const Machine
     }
     const MachineDoubt doubt = doubt_machine(machine_, stand, there.seen);
     if (doubt.beyond_class) {
-      verdict = {.known = true, .charge = charge_by(doubt, there.seen), .doubt = doubt};
+      verdict = {.known = true, .charge = charge_by(stand, doubt, there.seen), .doubt = doubt};
       return;
     }
     // Too little may be in view to tell: then only what else this frame shows to be wrong counts.
     if (!there.worse &&
-        doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden >= std::abs(asked->amount)) {
+        doubt.joints.at(static_cast<std::size_t>(asked->joint)).hidden >= std::abs(asked->amount)) {
       verdict.known = verdict.charge.has_value();
       return;
     }
@@ -227,19 +237,15 @@ std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand&
                                                              const QuaySearch::Elsewhere& elsewhere) const {
   const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere.seen);
   if (doubt.beyond_class) {
-    return Verdict{.known = true, .charge = charge_by(doubt, elsewhere.seen), .doubt = doubt};
+    return Verdict{.known = true, .charge = charge_by(stand, doubt, elsewhere.seen), .doubt = doubt};
   }
   const MachineGuess& guess = elsewhere.guess;
   if (elsewhere.lasting && guess.joint && guess.beyond_wear &&
       doubt.joints.at(static_cast<std::size_t>(*guess.joint)).hidden >= std::abs(guess.amount)) {
-    return Verdict{.known = true, .charge = charge_by(guess, elsewhere.seen), .doubt = doubt};
+    MachineCharge charge{accusation(*guess.joint, guess.amount), WrongJoint{*guess.joint, guess.amount}};
+    return Verdict{.known = true, .charge = std::move(charge), .doubt = doubt};
   }
   return std::nullopt;
-}
-
-/// Where no planes tell of the joint, the things that are met there do.
-MachineCharge MachineWitness::charge_by(const MachineGuess& guess, const Misplacement& seen) {
-  return {accusation(*guess.joint, guess.amount), guess.joint, guess.amount, seen.measured.size()};
 }
 
 /// A sight of the quay is of a machine that stands once all of its observations are.
@@ -256,15 +262,27 @@ void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, 
 }
 
 /// Of what this frame would have shown, and does not. `asked`: the joint's charge that was held against it.
-void MachineWitness::acquit(const Verdict& verdict, const MachineCharge* asked) {
-  if (asked != nullptr &&
-      (verdict.refutes_asked ||
-       verdict.doubt.joints.at(static_cast<std::size_t>(*asked->joint)).hidden < std::abs(asked->amount))) {
+/// That a limit has moved, so that wear could explain what was charged, acquits of nothing.
+void MachineWitness::acquit(const MachineStand& stand, const Verdict& verdict,
+                            const std::optional<WrongJoint>& asked) {
+  if (asked && (verdict.refutes_asked ||
+                refutes(verdict.doubt.joints.at(static_cast<std::size_t>(asked->joint)), asked->amount))) {
     charges_.drop(asked->joint);
   }
-  const MachineCharge* nameless = charges_.without_joint();
-  if (nameless != nullptr && seen_.measured.size() >= nameless->directions) {
-    charges_.drop(std::nullopt);
+  if (const auto latency = charges_.charged<WrongLatency>();
+      latency && at_rest_ && seen_.holds_all() &&
+      refutes(doubt_latency(machine_, stand, seen_, *at_rest_), latency->older)) {
+    charges_.drop<WrongLatency>();
+  }
+  if (const auto place = charges_.charged<WrongPlace>()) {
+    const Twist off = about_point(seen_.centre_W - stand.sensor_W,
+                                  carried_by_boom(machine_, place->stand, stand, place->off));
+    if (refutes(doubt_twist(machine_, stand, seen_, off, doubt_of_reference()))) {
+      charges_.drop<WrongPlace>();
+    }
+  }
+  if (charges_.charged<WrongAltogether>() && seen_.holds_all()) {
+    charges_.drop<WrongAltogether>();
   }
 }
 

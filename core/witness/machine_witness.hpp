@@ -1,9 +1,9 @@
 // Does the quay contradict the machine? One frame's sight of it, and what stands since earlier ones.
 //
-// A machine beyond its class takes health until sights of the quay that would have shown it again do not, or
-// a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not; a frame that sees
-// none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner. Cost: 0.4 ms a
-// frame, 0.7 ms while a charge stands, whatever the map's size.
+// A machine beyond its class takes health until sights of the quay that would have shown it again show less
+// than half of it, or a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not;
+// a frame that sees none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner.
+// Cost: 0.4 ms a frame, 0.7 ms while a charge stands, whatever the map's size.
 #pragma once
 
 #include <deque>
@@ -65,11 +65,12 @@ class MachineWitness {
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
   [[nodiscard]] std::optional<Verdict> judge(const MachineStand& stand,
                                              const QuaySearch::Elsewhere& elsewhere) const;
-  void acquit(const Verdict& verdict, const MachineCharge* asked);
+  void acquit(const MachineStand& stand, const Verdict& verdict, const std::optional<WrongJoint>& asked);
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
-  [[nodiscard]] MachineCharge charge_by(const MachineDoubt& doubt, const Misplacement& seen) const;
-  [[nodiscard]] static MachineCharge charge_by(const MachineGuess& guess, const Misplacement& seen);
-  void weigh_other_places(const MachineStand& stand, const MachineCharge* asked, Verdict& verdict);
+  [[nodiscard]] MachineCharge charge_by(const MachineStand& stand, const MachineDoubt& doubt,
+                                        const Misplacement& seen) const;
+  void weigh_other_places(const MachineStand& stand, const std::optional<WrongJoint>& asked,
+                          Verdict& verdict);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();

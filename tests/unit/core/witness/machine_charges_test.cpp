@@ -5,19 +5,26 @@
 namespace hulltrack {
 namespace {
 
-const MachineCharge kTravel{"travel is off", JointName::travel, 1.0, 6};
-const MachineCharge kSlew{"slew is off", JointName::slew, 0.02, 6};
-const MachineCharge kNameless{"a mount is off", std::nullopt, 0.0, 3};
+const MachineCharge kTravel{"travel is off", WrongJoint{JointName::travel, 1.0}};
+const MachineCharge kSlew{"slew is off", WrongJoint{JointName::slew, 0.02}};
+const MachineCharge kLate{"values are late", WrongLatency{0.2}};
+const MachineCharge kPlace{"a mount is off", WrongPlace{}};
+const MachineCharge kAltogether{"the quay is seen through", WrongAltogether{}};
 
 TEST(MachineCharges, EachIsDroppedByItself) {
   MachineCharges charges;
   EXPECT_FALSE(charges.any());
   EXPECT_EQ(charges.reason(), "");
-  charges.add(kTravel);
-  charges.add(kSlew);
-  charges.add(kNameless);
+  for (const MachineCharge& charge : {kTravel, kSlew, kLate, kAltogether, kPlace}) {
+    charges.add(charge);
+  }
   EXPECT_EQ(charges.reason(), "a mount is off");
-  charges.drop(std::nullopt);
+  charges.drop<WrongPlace>();
+  EXPECT_FALSE(charges.charged<WrongPlace>());
+  EXPECT_TRUE(charges.charged<WrongLatency>());
+  EXPECT_TRUE(charges.charged<WrongAltogether>());
+  charges.drop<WrongAltogether>();
+  charges.drop<WrongLatency>();
   charges.drop(JointName::slew);
   EXPECT_TRUE(charges.any());
   EXPECT_EQ(charges.reason(), "travel is off");
@@ -25,32 +32,35 @@ TEST(MachineCharges, EachIsDroppedByItself) {
   EXPECT_FALSE(charges.any());
 }
 
-TEST(MachineCharges, ANewOneReplacesThatOfTheSameJointOnly) {
+TEST(MachineCharges, ANewOneReplacesThatOfTheSameJointOrKindOnly) {
   MachineCharges charges;
   charges.add(kTravel);
-  charges.add({"travel is off by more", JointName::travel, 2.0, 6});
+  charges.add({"travel is off by more", WrongJoint{JointName::travel, 2.0}});
   charges.add(kSlew);
+  charges.add(kLate);
+  charges.add({"values are later", WrongLatency{0.3}});
   for (int i = 0; i < 4; ++i) {
-    const MachineCharge* asked = charges.next_joint();
-    ASSERT_NE(asked, nullptr);
+    const auto asked = charges.next_joint();
+    ASSERT_TRUE(asked);
     EXPECT_EQ(asked->amount, asked->joint == JointName::travel ? 2.0 : 0.02);
   }
+  EXPECT_EQ(charges.charged<WrongLatency>()->older, 0.3);
 }
 
 TEST(MachineCharges, JointsAreAskedInTurnAndWhatNamesNoneIsNoJoint) {
   MachineCharges charges;
-  charges.add(kNameless);
-  EXPECT_EQ(charges.next_joint(), nullptr);
-  ASSERT_NE(charges.without_joint(), nullptr);
-  EXPECT_EQ(charges.without_joint()->directions, 3U);
+  charges.add(kPlace);
+  charges.add(kLate);
+  charges.add(kAltogether);
+  EXPECT_FALSE(charges.next_joint());
   charges.add(kTravel);
   charges.add(kSlew);
   const auto first = charges.next_joint()->joint;
   EXPECT_NE(charges.next_joint()->joint, first);
   EXPECT_EQ(charges.next_joint()->joint, first);
   charges.drop_all();
-  EXPECT_EQ(charges.next_joint(), nullptr);
-  EXPECT_EQ(charges.without_joint(), nullptr);
+  EXPECT_FALSE(charges.next_joint());
+  EXPECT_FALSE(charges.any());
 }
 
 }  // namespace
