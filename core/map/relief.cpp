@@ -23,6 +23,10 @@ constexpr float kOnRim = 0.15F;  // m
 // most.
 constexpr int kStride = 3;
 
+// Tiles that a horizon looks across, beyond its own.
+constexpr int kFarTiles = 5;
+static_assert(Relief::kReach / Relief::kCell / Relief::kTile == float{kFarTiles});
+
 int cells(float metres) { return static_cast<int>(std::lround(metres / Relief::kCell)); }
 
 }  // namespace
@@ -78,8 +82,6 @@ Relief::Cell Relief::cell_of(const Point& p) const {
 /// their cells), and where tiles with points lie within kReach on all four sides: the floor of a hold that no
 /// survey saw. Of the latter there are five at most for each tile with points.
 void Relief::make_tiles(std::span<const Point> cloud_H) {
-  static_assert(kReach / kCell / kTile == 5.0F, "a horizon looks across whole tiles");
-  constexpr int kFar = 5;
   BlockIndex with_points;
   std::vector<Cell> tiles;
   BlockIndex kept;
@@ -98,7 +100,7 @@ void Relief::make_tiles(std::span<const Point> cloud_H) {
     }
   }
   const auto any = [&](Cell tile, int dc, int dr) {
-    for (int i = 1; i <= kFar; ++i) {
+    for (int i = 1; i <= kFarTiles; ++i) {
       if (with_points.find(tile.column + i * dc, tile.row + i * dr, 0) != BlockIndex::kNone) {
         return true;
       }
@@ -110,7 +112,7 @@ void Relief::make_tiles(std::span<const Point> cloud_H) {
     if (with_points.find(tile.column, tile.row, 0) == BlockIndex::kNone) {
       continue;
     }
-    for (int step = 1; step <= kFar; ++step) {
+    for (int step = 1; step <= kFarTiles; ++step) {
       ++tile.column;
       if (with_points.find(tile.column, tile.row, 0) != BlockIndex::kNone) {
         break;
@@ -179,6 +181,32 @@ void Relief::look_around(const std::vector<T>& values, std::size_t tile, int rea
   }
 }
 
+/// Per tile: whether there is nothing in it and as far as a horizon reaches to one of the four sides.
+std::vector<std::uint8_t> Relief::open_tiles() const {
+  std::vector<std::uint8_t> bare(corners_.size());
+  for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
+    const auto first = top_.begin() + static_cast<std::ptrdiff_t>(tile * kTileCells);
+    bare[tile] = std::all_of(first, first + kTileCells, [](float top) { return top == kNothing; }) ? 1 : 0;
+  }
+  const auto nothing = [&](std::size_t from, int dc, int dr) {
+    for (int i = 0; i <= kFarTiles; ++i) {
+      const std::uint32_t tile = tiles_.find((corners_[from].column >> kTileBits) + i * dc,
+                                             (corners_[from].row >> kTileBits) + i * dr, 0);
+      if (tile != BlockIndex::kNone && bare[tile] == 0) {
+        return false;
+      }
+    }
+    return true;
+  };
+  std::vector<std::uint8_t> open(corners_.size());
+  for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
+    const bool is_open =
+        nothing(tile, 1, 0) || nothing(tile, -1, 0) || nothing(tile, 0, 1) || nothing(tile, 0, -1);
+    open[tile] = is_open ? 1 : 0;
+  }
+  return open;
+}
+
 void Relief::find_horizons() {
   horizon_.assign(top_.size(), kNothing);
   Window<float> around(kNothing);
@@ -203,8 +231,12 @@ void Relief::find_horizons() {
     }
     return least;
   };
+  const std::vector<std::uint8_t> open = open_tiles();
   for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
-    look_around(top_, tile, 5, around);
+    if (open[tile] != 0) {
+      continue;
+    }
+    look_around(top_, tile, kFarTiles, around);
     for (int row = 0; row < kTile; ++row) {
       for (int column = 0; column < kTile; ++column) {
         const Cell c{corners_[tile].column + column, corners_[tile].row + row};

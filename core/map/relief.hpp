@@ -22,7 +22,9 @@ namespace hulltrack {
 
 class Relief {
  public:
-  static constexpr float kCell = 0.25F;   // m
+  static constexpr float kCell = 0.25F;  // m
+  static constexpr int kTileBits = 4;
+  static constexpr int kTile = 1 << kTileBits;  // cells
   static constexpr float kDepth = 2.0F;   // m: deeper than anything on a deck between coamings and bulwark
   static constexpr float kReach = 20.0F;  // m: half of the longest hatch
   /// As far from a hatch as its covers stand when folded or rolled away, m.
@@ -56,8 +58,6 @@ class Relief {
   [[nodiscard]] std::size_t memory() const;
 
  private:
-  static constexpr int kTileBits = 4;
-  static constexpr int kTile = 1 << kTileBits;  // cells
   static constexpr std::size_t kTileCells = std::size_t{kTile} * kTile;
   static constexpr std::size_t kNoPlace = static_cast<std::size_t>(-1);
 
@@ -92,6 +92,7 @@ class Relief {
   void look_around(const std::vector<T>& values, std::size_t tile, int reach, Window<T>& window) const;
 
   void make_tiles(std::span<const Point> cloud_H);
+  [[nodiscard]] std::vector<std::uint8_t> open_tiles() const;
   void find_horizons();
   void find_pits();
   void find_insides();
