@@ -20,6 +20,23 @@ constexpr double kAgrees = 0.10;     // m: two kernels, five sigma of a return
 constexpr double kExplained = 0.9;   // of the observations, in place 97 to 99 in 100: no need to look further
 constexpr double kMuchBetter = 1.1;  // times the observations explained: else the machine has its word
 
+/// What a twist about the centre changes an observation's offset by, for each of its six.
+struct Row {
+  Eigen::Vector3d turn, shift;
+  double offset;
+  PlaneSystem::Vector7 weighed;  // as PlaneSystem wants it
+
+  Row(const QuayObservation& o, const Eigen::Vector3d& centre, const PlaneSystem& system)
+      : turn((o.p_W - centre).cross(o.n_W)),
+        shift(o.n_W),
+        offset(o.offset),
+        weighed(system.jacobian(o.p_W, o.n_W, 0.0)) {}
+
+  [[nodiscard]] double residual(const Twist& twist) const {
+    return offset - turn.dot(twist.head<3>()) - shift.dot(twist.tail<3>());
+  }
+};
+
 double residual(const QuayObservation& o, const Eigen::Vector3d& centre, const Twist& twist) {
   return o.offset - (o.p_W - centre).cross(o.n_W).dot(twist.head<3>()) - o.n_W.dot(twist.tail<3>());
 }
@@ -30,13 +47,12 @@ struct Fit {
   std::uint32_t agreeing = 0;
 };
 
-Fit fit(std::span<const QuayObservation> observations, const Eigen::Vector3d& centre,
-        std::span<const double> kernels) {
+Fit fit(std::span<const Row> rows, const Eigen::Vector3d& centre, std::span<const double> kernels) {
   Fit fit;
   for (std::size_t i = 0; i < kernels.size(); ++i) {
     PlaneSystem system(centre, kernels[i]);
-    for (const QuayObservation& o : observations) {
-      system.add(o.p_W, o.n_W, residual(o, centre, fit.twist));
+    for (const Row& row : rows) {
+      system.add(row.weighed, row.residual(fit.twist));
     }
     const Twist step = system.solve().twist;
     fit.twist -= step;  // the system moves returns onto planes, E the other way
@@ -46,8 +62,8 @@ Fit fit(std::span<const QuayObservation> observations, const Eigen::Vector3d& ce
       break;
     }
   }
-  for (const QuayObservation& o : observations) {
-    fit.agreeing += std::abs(residual(o, centre, fit.twist)) <= kAgrees ? 1 : 0;
+  for (const Row& row : rows) {
+    fit.agreeing += std::abs(row.residual(fit.twist)) <= kAgrees ? 1 : 0;
   }
   return fit;
 }
@@ -87,9 +103,15 @@ Misplacement find_misplacement(std::span<const QuayObservation> observations) {
   for (const QuayObservation& o : observations) {
     found.centre_W += o.p_W / static_cast<double>(observations.size());
   }
-  Fit best = fit(observations, found.centre_W, kNarrow);
-  if (best.agreeing < kExplained * double(observations.size())) {
-    const Fit wide = fit(observations, found.centre_W, kWide);
+  std::vector<Row> rows;
+  rows.reserve(observations.size());
+  const PlaneSystem about_centre(found.centre_W, kAgrees);
+  for (const QuayObservation& o : observations) {
+    rows.emplace_back(o, found.centre_W, about_centre);
+  }
+  Fit best = fit(rows, found.centre_W, kNarrow);
+  if (best.agreeing < kExplained * double(rows.size())) {
+    const Fit wide = fit(rows, found.centre_W, kWide);
     if (wide.agreeing > kMuchBetter * best.agreeing) {
       best = wide;
     }

@@ -40,7 +40,10 @@ class PlaneSystem {
   /// A pair with residual r (m); p and n (unit) in one frame. `rise`: of the bent map at p for each metre of
   /// bend.
   void add(const Eigen::Vector3d& p, const Eigen::Vector3d& n, double r, double rise = 0.0) {
-    const Vector7 j = jacobian(p, n, rise);
+    add(jacobian(p, n, rise), r);
+  }
+  /// The same of a pair whose jacobian() is known.
+  void add(const Vector7& j, double r) {
     const double w = weight_of(r);
     for (int row = 0; row < 7; ++row) {
       const double wj = w * j[row];

@@ -152,18 +152,16 @@ void QuaySearch::try_guess(const QuayMap& map, const MachineGuess& guess, const 
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   tally_.clear();
   count(map.things(), moves, 0, glance_);
-  std::size_t counted = first_;
-  bool clear = tally_.lost.size() > tally_.gained.size() && loses_as_much(counted);
+  bool clear = tally_.lost.size() > tally_.gained.size() && loses_as_much(first_);
   if (!clear) {
     count(map.things(), moves, glance_, first_);
     const bool may_be_right = tally_.gained.size() >= std::max(kFewestOfFirst, tally_.lost.size());
-    clear = !may_be_right && (!guess.joint || loses_as_much(counted) || planes_show(guess));
+    clear = !may_be_right && (!guess.joint || planes_show(guess) || loses_as_much(first_));
   }
   if (!clear) {
     count_rest(map.things(), moves, off);
-    counted = asked_.size();
   }
-  would_win_[next_] = guess.joint && (loses_as_much(counted) || planes_show(guess));
+  would_win_[next_] = guess.joint && (clear || planes_show(guess) || loses_as_much(asked_.size()));
 }
 
 /// Whether what so many of the asked lose is as much as a better guess has to gain.
