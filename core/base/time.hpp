@@ -25,8 +25,8 @@ struct MeasurementClock {
 using MeasurementTime = MeasurementClock::time_point;
 using SteadyTime = std::chrono::time_point<std::chrono::steady_clock, Nanoseconds>;
 
-/// Wall clock (UTC) as the kernel stamps datagrams and sensors count. Converted at the edge: nothing that
-/// measures or waits reckons with it.
+/// Wall clock (UTC): the kernel stamps datagrams with it, and sensors count it. It is converted to
+/// MeasurementTime at the edge; nothing that measures or waits uses it.
 using WallTime = std::chrono::time_point<std::chrono::system_clock, Nanoseconds>;
 
 [[nodiscard]] constexpr MeasurementTime measurement_time_from_ns(std::int64_t ns) {

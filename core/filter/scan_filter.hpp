@@ -1,12 +1,14 @@
-// Every return of a scan from its sensor's frame L to the world W, and which of them may be hull.
+// Takes every return of a scan from its sensor's frame L to the world W, and says which of them may be hull.
 //
-// Each segment is moved with the joints at its own time (one T_W_L a segment: the loader moves less
-// than 1 mm within a datagram), and on with the hull to the scan's middle. A return is a candidate if its
-// range is within the sensor's limits, no exclude box in L holds it and the region in W does. Frames L and W,
-// metres. Precondition: the joint history covers the scan (the caller asks covers() first); a segment that it
-// does not answer for, of an unknown LiDAR, or outside the point array is left out and counted.
-// NaN and infinite points are left out. Thread rule: one owner. Cost: one pass, no allocation once the
-// buffers have grown to the scan's size.
+//   1. Each segment (the points of a datagram) gets one T_W_L from the joints at its own time: the loader
+//      moves less than 1 mm within a datagram.
+//   2. Its returns are moved on with the hull's drift, to where the hull is at the middle of the scan. This
+//      holds for all returns, also those of the quay.
+//   3. Returns outside of the sensor's limits of range are left out, and so are NaN and infinite points.
+//   4. A return may be hull if no exclude box in L holds it and the region in W does.
+// Frames L and W, metres. Precondition: the joint history covers the scan (the caller asks covers() first). A
+// segment without joints, of an unknown LiDAR, or outside the point array is left out and counted.
+// Thread rule: one owner. Cost: one pass, no allocation once the buffers have grown to the scan's size.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +32,7 @@ struct SensorConfig {
   std::vector<Box> exclude;       // in L: the machine's own chute and boom
 };
 
-/// What a return may be of.
+/// What a return may be of. Without a region, all that is not in an exclude box counts as hull.
 enum class ReturnOf : std::uint8_t {
   surroundings,  // outside of the region
   hull,          // it is in FilteredScan::hull_W
@@ -38,9 +40,9 @@ enum class ReturnOf : std::uint8_t {
 };
 
 struct FilteredScan {
-  std::vector<Cloud> returns_W;           // per LiDAR all of valid range, hull or not: what it really saw
-  std::vector<std::vector<ReturnOf>> of;  // for each of these
-  Cloud hull_W;                           // the candidates for hull, full resolution
+  std::vector<Cloud> returns_W;           // per LiDAR: all returns of valid range, hull or not
+  std::vector<std::vector<ReturnOf>> of;  // for each return in returns_W
+  Cloud hull_W;                           // returns that may be hull, at full resolution
   std::uint32_t segments_left_out = 0;
 };
 

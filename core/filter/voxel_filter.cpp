@@ -12,7 +12,7 @@ constexpr std::uint32_t kNoVoxel = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t kEmptyKey = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t kFirstTableSize = 1024;
 
-// Points whose places in the table are fetched ahead of their turn.
+// So many points at a time have their places in the table fetched into the cache before they are looked up.
 constexpr std::size_t kBlock = 64;
 
 constexpr float kReach = 1048576.0F;  // voxels from the origin along each axis: 21 bits with the sign

@@ -1,9 +1,11 @@
 // Thins a cloud to one real point a voxel (Guo 2025, 2.3 a).
 //
-// The representative is the point nearest to the centroid of its voxel's points, ties by index. Unlike
-// the point nearest to the voxel's middle it does not lean towards the grid (a deck lies at one height, so
-// every voxel on it would lean the same way), and unlike the first point it prefers the middle of the
-// noise; unlike the centroid itself it was measured.
+// It keeps the point nearest to the centroid of its voxel's points, ties by index. Why not another:
+//   - the point nearest to the voxel's middle leans towards the grid: a deck lies at one height, so every
+//     voxel on it would lean the same way;
+//   - the first point has all of a return's noise, while the one nearest to the centroid lies in the middle
+//     of it;
+//   - the centroid itself was not measured.
 // Voxels are cubes with corners at whole multiples of the size from the frame's origin. Any frame; m.
 // Failure: none; points that are not finite or lie more than 2^20 voxels from the origin are left out.
 // Thread rule: one owner; scratch memory is kept between calls. Cost: linear in the points.

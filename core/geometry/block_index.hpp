@@ -1,9 +1,9 @@
-// Which number has the block of cells at (x, y, z), if there is one? For grids that are kept only where
-// something is: their memory grows with what is in them, not with how far it lies apart.
+// Which number has the block of cells at (x, y, z), if it has one? For grids that are kept only where
+// something is: their memory grows with what is in them, not with how far apart it lies.
 //
 // A hash table from whole coordinates to the numbers 0, 1, 2, ... in the order in which blocks were added.
 // Coordinates within +-kFarthest. No failure: a block that was not added has no number. Thread rule: a plain
-// value; any number of threads may find(). Cost: 32 to 64 bytes a block; some 3 ns to find one or none.
+// value; any number of threads may find(). Cost: 32 to 64 bytes a block; some 3 ns a find().
 #pragma once
 
 #include <cassert>
@@ -14,7 +14,8 @@
 
 namespace hulltrack {
 
-/// std::floor is a call on processors of before SSE 4.1, which the code is built for. |v| < 2^31.
+/// std::floor for |v| < 2^31. The code is built for processors before SSE 4.1 too, where std::floor is a
+/// call.
 [[nodiscard]] inline int rounded_down(float v) {
   const int towards_zero = static_cast<int>(v);
   return towards_zero - (v < static_cast<float>(towards_zero) ? 1 : 0);
@@ -60,7 +61,7 @@ class BlockIndex {
     return (part(x) << (2 * kBits)) | (part(y) << kBits) | part(z);
   }
 
-  /// Where the key stands, or where it would be put.
+  /// The slot that holds the key, or the free one where it would be put.
   [[nodiscard]] std::size_t place_of(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
     // 2^64 / golden ratio spreads neighbouring keys, best in the highest bits, which all of a key's bits

@@ -13,7 +13,7 @@ struct Box {
   Point min = Point::Zero();
   Point max = Point::Zero();
 
-  /// Of no points: contains nothing, and grows to the first point that is added.
+  /// The box of no points: contains nothing, and grows to the first point that is added.
   [[nodiscard]] static Box none() {
     constexpr float kFar = std::numeric_limits<float>::infinity();
     return {Point::Constant(kFar), Point::Constant(-kFar)};
@@ -23,7 +23,7 @@ struct Box {
     min = min.cwiseMin(p);
     max = max.cwiseMax(p);
   }
-  /// Of opposite corners; 0 of a box of no points.
+  /// Distance between opposite corners; 0 for a box of no points.
   [[nodiscard]] float diagonal() const {
     return (max.array() >= min.array()).all() ? (max - min).norm() : 0.0F;
   }

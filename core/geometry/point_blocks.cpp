@@ -31,9 +31,10 @@ bool PointBlocks::may_reach(const Point& centre_L, float radius, const SightLimi
   }
   const float beyond2 = distance2 - radius * radius;
   if (!(beyond2 > 0.0F)) {
-    return true;  // all around the sensor
+    return true;  // the sensor is inside of the ball
   }
-  // Seen from L the ball is a disc about its centre's direction: rows differ by no more than its radius.
+  // Seen from L the ball is a disc around its centre's direction: no point of it is higher or lower than the
+  // centre by more than the disc's angular radius.
   const float elevation = fast_atan2(centre_L.z(), centre_L.head<2>().norm());
   const float around = fast_atan2(radius, std::sqrt(beyond2)) + kRounding;
   const float lowest = (static_cast<float>(limits.lowest_row) - 90.0F) * kDegree;

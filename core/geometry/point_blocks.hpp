@@ -1,6 +1,7 @@
-// A fixed cloud in blocks of neighbours, each in a ball: what a sensor cannot reach or does not look at is
-// passed over whole.
+// A fixed cloud in blocks of neighbouring points, each with a ball around it. Blocks whose ball is out of a
+// sensor's range, or in rows that it does not look at, are skipped whole.
 //
+// Points are ordered along a Z-order curve (z_order.hpp) and cut into blocks of Sightings::kBlock.
 // Any frame; metres, float. Immutable. No failure: points that are not finite are left out.
 // Cost: some 20 ns a point to build.
 #pragma once
@@ -17,8 +18,7 @@
 
 namespace hulltrack {
 
-/// A part of what surrounds a sensor: as far as `range` (m), between two rows of SphericalGrid, both
-/// included.
+/// A part of a sensor's surroundings: up to `range` (m), between two rows of SphericalGrid, both included.
 struct SightLimits {
   float range;
   int lowest_row = 0;
@@ -29,11 +29,11 @@ class PointBlocks {
  public:
   explicit PointBlocks(std::span<const Point> cloud);
 
-  /// The points, neighbours together: every Sightings::kBlock of them are a block.
+  /// The points, neighbours together: each Sightings::kBlock of them are a block.
   [[nodiscard]] const Cloud& points() const { return points_; }
 
-  /// As sight(), in blocks of which some point may lie within the limits: calls visit(sightings, index
-  /// therein) for all points of those.
+  /// Like sight(), but only for blocks that may have a point within the limits: calls visit(sightings, index
+  /// therein) for all points of such a block, also those outside of the limits.
   template <typename Visit>
   void sight_within(const SightLimits& limits, const Pose& T_L_A, Visit&& visit) const;
 
@@ -48,7 +48,7 @@ class PointBlocks {
     float radius;
   };
 
-  /// Whether the limits may hold some point of a ball in L.
+  /// Whether some point of a ball in L may lie within the limits.
   [[nodiscard]] static bool may_reach(const Point& centre_L, float radius, const SightLimits& limits);
 
   Cloud points_;

@@ -31,7 +31,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 [[nodiscard]] Pose pose_about(const Eigen::Vector3d& centre, const Eigen::Matrix3d& R,
                               const Eigen::Vector3d& shift);
 
-/// The same small motion as a twist about a point that lies `away` from the one that `twist` is about.
+/// Takes the twist of a small motion about one point to its twist about another, which lies `away` from the
+/// first.
 [[nodiscard]] inline Twist about_point(const Eigen::Vector3d& away, const Twist& twist) {
   Twist moved = twist;
   moved.tail<3>() += twist.head<3>().cross(away);

@@ -18,7 +18,7 @@ namespace {
     py[i] = points[i].y();
     pz[i] = points[i].z();
   }
-  // Whole blocks always: a fixed length is what the compiler vectorises.
+  // Always whole blocks: the compiler vectorises loops of a fixed length.
   for (std::size_t i = 0; i < Sightings::kBlock; ++i) {
     out.x[i] = R(0, 0) * px[i] + R(0, 1) * py[i] + R(0, 2) * pz[i] + t.x();
     out.y[i] = R(1, 0) * px[i] + R(1, 1) * py[i] + R(1, 2) * pz[i] + t.y();
@@ -33,7 +33,8 @@ namespace {
   }
 }
 
-// The same twice: without contraction to fused operations both give the same bits.
+// The same function, compiled for two processors: without contraction to fused operations both give the same
+// bits.
 [[gnu::target("avx2")]] void sight_avx2(std::span<const Point> points, const Eigen::Matrix3f& R,
                                         const Point& t, Sightings& out) {
   sight_lanes(points, R, t, out);

@@ -1,8 +1,9 @@
 // How does a sensor see points: where in its frame, how far away, in which direction?
 //
-// Points of any frame are moved into the sensor's frame L and sorted into cells of SphericalGrid, a block of
-// them at a time, so that the processor works on several at once. Same answers as SphericalGrid::cell().
-// Metres, float. Pure; a point that is not finite gets some cell and a range that is not finite.
+// Moves points of any frame into the sensor's frame L; gives their squared range and their cell of
+// SphericalGrid, the same as SphericalGrid::cell(). Works on a block of 64 points at a time, so that the
+// processor handles several at once. Metres, float. Pure; a point that is not finite gets some cell and a
+// range that is not finite.
 // Cost: some 5 ns a point.
 #pragma once
 
@@ -27,7 +28,8 @@ struct Sightings {
   [[nodiscard]] Point point(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-/// Sees `points` (at most Sightings::kBlock) of a frame A from L; entries beyond their number are undefined.
+/// Sees `points` of a frame A from L. At most Sightings::kBlock points; entries of `out` beyond their number
+/// are undefined.
 void sight_block(std::span<const Point> points, const Eigen::Matrix3f& R_L_A, const Point& t_L_A,
                  Sightings& out);
 

@@ -1,8 +1,8 @@
 // Directions from a sensor in cells of one degree: which cell does a point fall into?
 //
-// Rows are elevations from -90 deg, columns azimuths from -180 deg, about the z axis of the frame that
-// the point is given in (L). Cells shrink towards the poles, where no spinning LiDAR looks.
-// Pure; total (the origin falls into some cell, and so does what is no number). Cost: a few ns, no table.
+// Rows are elevations from -90 deg, columns azimuths from -180 deg, about the z axis of the frame that the
+// point is given in (L). Cells shrink towards the poles, where no spinning LiDAR looks.
+// Pure; every point gets a cell, also the origin and NaN. Cost: a few ns, no table.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,9 @@
 
 namespace hulltrack {
 
-/// atan2 to 1e-5 rad (Abramowitz & Stegun 4.4.49 on the smaller octant), several times as fast. Without
-/// branches, so that a loop over it can be vectorised. fast_atan2(0, 0) = 0.
+/// An approximation of atan2 to 1e-5 rad: the polynomial of Abramowitz & Stegun 4.4.49 for angles up to 45
+/// deg, and symmetry. Several times as fast as std::atan2, and without branches, so that a loop over it can
+/// be vectorised. fast_atan2(0, 0) = 0.
 [[nodiscard]] inline float fast_atan2(float y, float x) {
   constexpr float kHalfPi = std::numbers::pi_v<float> / 2.0F;
   const float ax = std::abs(x);
@@ -48,10 +49,10 @@ struct SphericalGrid {
     }
   };
 
-  /// Row of a direction `z` high over `planar` (>= 0).
+  /// Row of a direction that rises by `z` over a horizontal distance `planar` (>= 0).
   [[nodiscard]] static int row(float planar, float z) { return whole(fast_atan2(z, planar), 90.0F, kRows); }
   [[nodiscard]] static int column(float x, float y) { return whole(fast_atan2(y, x), 180.0F, kColumns); }
-  /// Half the work of cell(), for who asks for the row first.
+  /// Half the work of cell(), for callers that need the row first.
   [[nodiscard]] static int row(const Point& p) {
     return row(std::sqrt(p.x() * p.x() + p.y() * p.y()), p.z());
   }
@@ -64,7 +65,7 @@ struct SphericalGrid {
   [[nodiscard]] static Cell cell(const Point& p) { return {row(p), column(p.x(), p.y())}; }
 
  private:
-  /// Whole degrees from -`first` on, in 0 .. count - 1; 0 for NaN.
+  /// Whole degrees of `angle` (rad), counted from -`first` deg and kept in 0 .. count - 1; 0 for NaN.
   [[nodiscard]] static int whole(float angle, float first, int count) {
     constexpr float kPerRadian = 180.0F / std::numbers::pi_v<float>;
     const float degrees = angle * kPerRadian + first;

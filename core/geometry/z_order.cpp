@@ -40,7 +40,7 @@ class Curve {
   }
 
  private:
-  // Also for what is no number, where the box is too large to be measured.
+  // Defined for NaN too, which comes up if the box is too large for a float: the last cell.
   [[nodiscard]] std::uint32_t cell(float offset) const {
     constexpr std::uint32_t kLast = (1U << kAxisBits) - 1;
     const float cells = offset * scale_;

@@ -1,8 +1,8 @@
 // In which order do points lie along a curve that keeps neighbours together?
 //
 // The Z-order curve (Morton 1966) through 1024^3 equal cubes over the cloud's box. Any frame and unit; the
-// same cloud always has the same order. No failure: points that are not finite are left out, and a box too
-// large to be measured has no order, any will do. Pure. Cost: three passes of a radix sort, some 10 ns a
+// same cloud always has the same order. No failure: points that are not finite are left out, and if the box
+// is too large for a float, the order is some order. Pure. Cost: three passes of a radix sort, some 10 ns a
 // point.
 #pragma once
 

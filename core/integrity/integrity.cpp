@@ -15,20 +15,24 @@ namespace {
 using surface_rays::kGrazing;
 using surface_rays::kSameSurface;
 
-constexpr float kHidden = 0.1F;     // m before a surfel: from there on something else was seen
-constexpr float kStepGate = 0.5F;   // m: observations farther off the plane belong to something else
-constexpr float kOnRim = 0.1F;      // m across: what is surely coaming around a rim point
-constexpr float kAlongRim = 0.1F;   // m: half of the distance of rim points
-constexpr float kBelowRim = 0.15F;  // m below its top: down beside it, on its side at least
-constexpr double kBlurred = 0.015;  // m, 1 sigma: three of them are a displaced patch
-constexpr float kRaised = 0.03F;    // m: a rim that may be covered
-constexpr double kOtherPlace = PatchEvidence::kReach;  // m: from there on patches mean other surfaces
-constexpr double kJump = 0.05;                         // m: three sigma of a pose that is worth looking at
-constexpr double kGap = 0.25;  // s: two frames without evidence, on which nothing is booked
-// In a shorter time no ship leaves the berth and another one moors there.
+constexpr float kHidden = 0.1F;     // m: a return farther before a surfel may be of another mapped surface
+constexpr float kStepGate = 0.5F;   // m: a return farther off the plane is of something else
+constexpr float kOnRim = 0.1F;      // m across from a rim point: nearer is surely coaming
+constexpr float kAlongRim = 0.1F;   // m along from a rim point: half of the distance of rim points
+constexpr float kBelowRim = 0.15F;  // m: a return lower below a rim's top went down beside it
+// A direction in which the pose is less sure tells nothing of patches: three times this is a displaced patch.
+constexpr double kBlurred = 0.015;  // m, 1 sigma
+constexpr float kRaised = 0.03F;    // m: a surface higher above a rim may be a cover
+// After a jump farther than this the patches' histograms are of other surfaces: evidence is forgotten.
+constexpr double kOtherPlace = PatchEvidence::kReach;  // m
+// A pose jumps if it moves by kJump more than kFastestHull allows: some three sigma of a pose that is as sure
+// as kBlurred. At most kGap counts as time for the hull to move, two frames without evidence and a margin.
+constexpr double kJump = 0.05;  // m
+constexpr double kGap = 0.25;   // s
+// After a longer time without evidence it is forgotten: another ship may have moored there.
 constexpr double kExchange = 300.0;  // s
 
-/// A rim point in L: upward, and across its strip.
+/// Axes at a rim point in L: n upward, across its strip towards the hold.
 struct RimAxes {
   Point p_L, n_L, across_L;
 
@@ -41,8 +45,8 @@ struct RimAxes {
   }
 };
 
-/// Calls visit(return, where its ray meets the plane, return's height over it) for the rays around a rim
-/// point.
+/// Calls visit(return, where its ray meets the level plane of the top, the return's height over that plane)
+/// for the rays around a rim point.
 template <typename Visit>
 void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
   const float plane = axes.n_L.dot(axes.p_L);
@@ -54,11 +58,11 @@ void look_across(const ScanView& view, const RimAxes& axes, Visit&& visit) {
   });
 }
 
-/// Whether another part of the map hides a surfel from the sensor within the tolerance that visibility
-/// leaves: a deck the ship's side below its edge.
+/// Does the map have another surface close before a surfel, towards the sensor? Visibility has a tolerance
+/// and does not notice: a deck hides the ship's side just below its edge, for example.
 bool is_behind_another(const HullMap& map, const Surfel& surfel, const Point& sensor_H) {
   const Point to_sensor = (sensor_H - surfel.centre_H).normalized();
-  // Steps of kHidden from twice that on: what is nearer may be the surfel's own surface.
+  // The first step is at 2 kHidden, because nearer map points may be of the surfel's own surface.
   for (int step = 2; static_cast<float>(step) * kHidden < Integrity::kBehind + kHidden / 2.0F; ++step) {
     const Point before = surfel.centre_H + static_cast<float>(step) * kHidden * to_sensor;
     const auto near = map.tree().nearest(before, kHidden);
@@ -105,7 +109,8 @@ void Integrity::weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_
   report.patches = evidence_.report();
 }
 
-/// Is the pose where a hull may have come to since evidence was collected last?
+/// Compares the pose with that of the last evidence. After a long time, or a jump that is long or follows a
+/// gap, evidence is forgotten; after another jump it counts as seen elsewhere.
 void Integrity::follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
                             const Eigen::Vector3d& reference_W) {
   if (weighed_) {
@@ -131,7 +136,7 @@ void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, co
   const Eigen::Vector3d n_W = T_W_H.linear() * surfel.normal_H.cast<double>();
   const Point n_L = (view.T_W_L().linear().transpose() * n_W).cast<float>();
   if (surfel.backed && n_L.dot(point.p_L) > 0.0F) {
-    return;  // its other side, which lies behind another surface
+    return;  // the sensor is on its other side, where another surface hides it
   }
   collect_rays(view, point.p_L, n_L, rays_);
   const RayEnd* nearest = nearest_ray(rays_);
@@ -169,7 +174,7 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
   if (rim.patch == Surfel::kNoPatch) {
     return;
   }
-  // Of so small a disc the height is known better than the slope: it is taken to be level.
+  // The top is taken to be level: of so small a disc the height is known better than the slope.
   const Eigen::Vector3d n_W = T_W_H.linear() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d p_W = T_W_H * rim.p_H.cast<double>();
   const Pose T_L_W = view.T_W_L().inverse();
@@ -181,7 +186,8 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
     raised = std::max(raised, offset);
   };
   look_across(view, axes, [&](const Point& returned, const Point& met, float offset) {
-    // Heights are asked where the returns are: the side of a cover that stands on the rim has all heights.
+    // The return itself has to be over the rim, not just where its ray meets the plane: the side of a cover
+    // that stands on the rim gives returns of all heights.
     if (std::abs(offset) <= kStepGate && axes.is_on_rim(returned)) {
       on(offset);
     } else if (offset < -kStepGate && axes.is_on_rim(met)) {
@@ -209,11 +215,10 @@ Eigen::Vector3d Integrity::Shift::at(const Eigen::Vector3d& p_W) const {
   return translation + rotation.cross(p_W - reference_W) + bend * shape.rise(x_H) * T_W_H.linear().col(2);
 }
 
-/// The looks of a frame whose pose is right and whose hull is that of the map but for `shift`, which is taken
-/// off.
+/// Adds the frame's looks and rim rays to the evidence, less what `shift` (pose error and bend) explains.
 void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& covariance_translation) {
   const Pose& T_W_H = shift.T_W_H;
-  // A direction that the pose's own uncertainty blurs says nothing about the ship.
+  // True if the pose is sure enough along the normal for an offset to say something about the ship.
   const auto sharp = [&](const Eigen::Vector3d& n_W) {
     return n_W.dot(covariance_translation * n_W) < kBlurred * kBlurred;
   };

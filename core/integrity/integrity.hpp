@@ -1,13 +1,14 @@
 // Does the scan contradict the pose? Checks that do not trust the registration's own figures.
 //
 // A point-to-point registration slides along surfaces: its residual, its matched points and Q1 hardly
-// change while it is off by decimetres along the quay. So every visible flat map point (surfel) is asked
-// along the sensor's own rays: the ray that would meet its plane nearest to it, where did it really end?
-//   confirmed     on the plane, within kPlaneGate
-//   contradicted  off the plane; behind it by more than kBehind: seen through
-//   hidden        in front of it by more than kBehind, or by less where the map has something: says nothing
-// From these come the share of confirmed surfels for each class of surfaces, the share seen through, and a
-// robust plane-to-point least squares step: by how much is the pose off, and how sure is that?
+// change while it is off by decimetres along the quay. So every visible flat map point (surfel) is checked
+// along the sensor's own rays: the ray that meets its plane nearest to it, where did it really end?
+//   confirmed     within kPlaneGate of the plane
+//   contradicted  farther off the plane; seen through if more than kBehind behind it
+//   hidden        more than kBehind before it, or less if the map has another surface there: not counted
+// Output: the share of confirmed surfels of each class of surfaces, the share seen through, and a step: the
+// correction of the pose that the scan asks for, by robust least squares, with its covariance. Nobody applies
+// the step; it is judged. weigh() also collects what rays say of the map's patches: is it the map's ship?
 // The answers can only take health away. Frames W, H, L; metres, radians.
 // Thread rule: one owner, scratch is kept. Cost: about 0.2 us a visible point.
 #pragma once
@@ -31,7 +32,7 @@
 
 namespace hulltrack {
 
-/// Surfels of one class that a ray reached or should have.
+/// Surfels of one class of surfaces: how many had a ray that counts, and how many were found in place.
 struct SurfaceCount {
   std::uint32_t expected = 0;  // confirmed + contradicted
   std::uint32_t confirmed = 0;
@@ -42,11 +43,11 @@ struct SurfaceCount {
 struct SurfelObservation {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  // where the pose puts the surfel
   Eigen::Vector3d n_W = Eigen::Vector3d::Zero();  // its normal
-  double offset = 0.0;  // n . (return - p), m, mean: how far the surface really is along the normal
-  double weight = 1.0;  // independent returns that the mean is worth
+  double offset = 0.0;  // mean of n . (return - p), m: how far the surface really is along the normal
+  double weight = 1.0;  // how many independent returns the mean is worth
 };
 
-/// A least squares step of observations: the pose's remaining error as the scan sees it.
+/// The correction of the pose that brings the observed surfaces onto the map's: the pose's remaining error.
 struct PlaneStep {
   bool solved = false;                                    // false: too few observations, or a direction free
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // of the reference point, W, m
@@ -61,9 +62,9 @@ struct PlaneStep {
 
 struct IntegrityReport {
   std::array<SurfaceCount, kSurfaceClasses> surfaces;
-  std::uint32_t expected = 0;  // all classes and none
+  std::uint32_t expected = 0;  // of all surfels, with a class or without
   std::uint32_t confirmed = 0;
-  std::uint32_t seen_through = 0;  // part of the contradicted
+  std::uint32_t seen_through = 0;  // part of those that are not confirmed
   PlaneStep step;
   PatchReport patches;
 };
@@ -71,75 +72,79 @@ struct IntegrityReport {
 struct IntegrityFinding {
   Faults faults = 0;       // contradicted, unconstrained
   std::string reason;      // with figures; empty without a fault
-  bool undecided = false;  // too early to say whether it is the ship of the map
+  bool undecided = false;  // no fault, but too few patches are judged to say whether it is the map's ship
 };
 
-/// Robust (Geman-McClure) Gauss-Newton over fixed observations, linearised about their centroid; the answer
-/// speaks of `reference_W`. sigma^2 H^-1 is inflated by kInflation^2.
+/// Robust (Geman-McClure) Gauss-Newton, linearised about the observations' centroid: the observations stay
+/// the same, their weights change. The answer is about `reference_W`. Its covariance is sigma^2 H^-1 times
+/// kInflation^2.
 [[nodiscard]] PlaneStep solve_plane_step(std::span<const SurfelObservation> observations,
                                          const Eigen::Vector3d& reference_W);
 
-/// What the figures mean for health; the limits and where they come from stand in the source.
+/// What the figures mean for health. The limits and their reasons are in integrity_limits.cpp.
 [[nodiscard]] IntegrityFinding judge_integrity(const IntegrityReport& report);
 
-/// The same without the patches: may they be judged at this pose?
+/// The same without the patches: they may be judged only at a pose that this does not contradict.
 [[nodiscard]] IntegrityFinding judge_pose_integrity(const IntegrityReport& report);
 
-/// May the hull as well lie at another place, whose report is `there`, if the scan confirms `here` surfels at
-/// the frame's own pose?
+/// May the hull as well lie at another place? `there`: the report at that place; `here`: how many surfels the
+/// scan confirms at the frame's own pose.
 [[nodiscard]] bool is_alternative(const IntegrityReport& there, std::uint32_t here);
 
 class Integrity {
  public:
   static constexpr float kPlaneGate = 0.15F;  // m
   static constexpr float kBehind = surface_rays::kBehind;
-  /// Surfaces are looked at as far as this from the sensor, m: with lasers 2 deg apart the lines of a scan
-  /// lie 1.4 m apart there, and every fourth surfel still meets a ray.
+  /// Surfaces are checked up to this distance from the sensor, m; `visible` has to reach as far. With lasers
+  /// 2 deg apart the lines of a scan are 1.4 m apart there, and every fourth surfel still has a ray within
+  /// reach.
   static constexpr double kSight = 40.0;
 
-  /// `visible`: of map.probes_H(), at the pose T_W_H. Neither the step nor the patches are in the report yet.
+  /// Asks the rays about each visible probe: surfels and rim points (on the tops of coamings). `visible`: of
+  /// map.probes_H(), at the pose T_W_H. The report is still without the step and the patches.
   [[nodiscard]] IntegrityReport run(const HullMap& map, std::span<const VisiblePoint> visible,
                                     const Pose& T_W_H, std::span<const ScanView> views);
 
-  /// The step that the scan of the last run() asks for. `reference_W`: the hull's reference point at its
+  /// The step that the scan of the last run() asks for. `reference_W`: the hull's reference point at that
   /// pose.
   [[nodiscard]] PlaneStep step(const Eigen::Vector3d& reference_W) const {
     return solve_plane_step(observations_, reference_W);
   }
 
-  /// What the scan of the last run() says about the ship, at its pose but for report.step and bent by `bend`
-  /// (m) along `shape`; fills report.patches. Once a frame, for the frame's own pose. What was seen belongs
-  /// to one unbroken track: it is put elsewhere when the pose jumps, and forgotten when it comes back from a
-  /// gap, or from metres away, at another place, or after minutes out of sight at any.
+  /// Adds what the scan of the last run() shows to the evidence about the patches; fills report.patches. Call
+  /// it once a frame, for the frame's own pose. What report.step and a bend of `bend` (m) along `shape`
+  /// explain is taken off. If the pose has jumped since the last call, earlier evidence counts as seen
+  /// elsewhere by the jump. It is forgotten after a jump that is long or follows a gap, and after minutes
+  /// out of sight.
   void weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
              const BendShape& shape, double bend, IntegrityReport& report);
 
-  /// Another ship may lie there from now on.
+  /// Forgets all evidence about the patches: another ship may lie there from now on.
   void forget() {
     evidence_.reset({});
     weighed_.reset();
   }
 
  private:
-  /// What one probe says about its patch, before the pose's remaining error is taken off.
+  /// What one ray, or one probe, says about a patch. The pose's remaining error is not yet taken off.
   struct PatchLook {
     std::uint32_t patch;
-    SurfelObservation seen;  // of a ray that went through the normal alone
-    enum Kind : std::uint8_t { on, through, goes_on, ends } kind;
+    SurfelObservation seen;  // kind on: all of it; through: only the normal; else nothing
+    enum Kind : std::uint8_t { on, through, goes_on, ends } kind;  // the last two: over the hold beside a rim
   };
-  /// A ray that meets the top of a coaming or the air beside it.
+  /// A ray that ended on the top of a coaming (a strip) or went down beside it.
   struct RimRay {
     const RimPoint* rim;
-    float s;  // across the strip, m: of the return if it is on the top, else of where the plane is met
-    float offset;
-    bool through;
+    float s;  // m across the strip: of the return, or if it went down: of where the ray meets the top's plane
+    float offset;  // height of the return over the top, m
+    bool through;  // it went down
   };
   void follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
                    const Eigen::Vector3d& reference_W);
   void look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
                       IntegrityReport& report);
   void look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
-  /// Where the scan has the point of the ship that the map and T_W_H put at p_W, less p_W.
+  /// How far the scan finds points of the ship from where map and pose put them: the pose's error and bend.
   struct Shift {
     Pose T_W_H;
     Eigen::Vector3d reference_W, translation, rotation;
@@ -158,7 +163,7 @@ class Integrity {
     MeasurementTime time;
     Eigen::Vector3d reference_W;
   };
-  std::optional<Place> weighed_;  // where evidence was collected last
+  std::optional<Place> weighed_;  // when and where evidence was collected last
 };
 
 }  // namespace hulltrack

@@ -6,35 +6,41 @@
 namespace hulltrack {
 namespace {
 
-// The pose's error is the step that the scan asks for (none after a point to plane fit), give or take so many
-// of its sigmas: all of it has to be within the contract.
+// The pose is contradicted if the length of the step that the scan asks for (zero after a point-to-plane fit)
+// plus so many of its sigmas is beyond the contract, 5 cm or 0.1 deg.
 constexpr double kSigmas = 3.0;
-// When the uncertainty alone takes this share of the contract the geometry, not the pose, is to blame: four
-// sigma within all of it, so that not one healthy frame in ten thousand is beyond.
+// If kSigmas sigmas alone are beyond this share of the contract, the fault is `unconstrained`: the geometry
+// is to blame, not the pose. Otherwise four sigma are within the contract: not one healthy frame in ten
+// thousand is beyond it.
 constexpr double kShareOfSigma = 0.75;
 
-// At a right pose a surfel is missed only where something was moved or noise is large: nine in ten and more
-// are confirmed. A class that is off by more than kPlaneGate keeps what lies there by chance, less than two
-// in ten. The limit is in the middle.
+// Least share of confirmed surfels in each class of surfaces; below it the pose is contradicted. At a right
+// pose nine in ten and more are confirmed: the others were moved, or noise is large. Of a class that is off
+// by more than kPlaneGate less than two in ten are confirmed, by chance. The limit is in the middle.
 constexpr double kLeastShare = 0.5;
-constexpr std::uint32_t kFewestForShare = 20;  // 3 sigma of a share of 0.7 from 20 is 0.3
+// Surfels of a class; with fewer its share is not judged. Three sigma of a share of 0.7 are 0.3 with 20.
+constexpr std::uint32_t kFewestForShare = 20;
 
-// Seen through: .02 at rest, .07 and more from a metre on.
+// Largest share of surfels seen through; above it the pose is contradicted. The share is 0.02 at a pose that
+// is right, 0.07 and more at one that is off by a metre or more.
 constexpr double kMostSeenThrough = 0.05;
 
-// Fewer confirmed surfels are no ground for a statement on shares: at 40 a share of 0.9 is known to 5 %.
+// With fewer confirmed surfels the pose counts as unconstrained. With 40 a share of 0.9 has a sigma of 5 %.
 constexpr std::uint32_t kFewestConfirmed = 40;
 
-// One thing that was moved on deck shows three faces at most. A coaming is not moved: a piece of its top
-// counts twice, and two are enough, since one may have something lying on it. A wall of one that stands
-// behind its place is enough: nothing that is put on board sets it back.
+// With so many displaced patches it is another ship. One thing that was moved on deck shows three faces at
+// most. A piece of a coaming's top counts twice, since a coaming cannot be moved; one is not enough, since
+// something may lie on it. One coaming's wall that stands behind its place (set back) is enough by itself:
+// nothing that is put on board sets it back.
 constexpr std::uint32_t kFewestDisplaced = 4;
-// Of many patches some are judged wrongly, one in a hundred say, and a hatch that is elsewhere shows a tenth.
+// If more patches are in view, one displaced in so many solid ones (in place or displaced) is needed. Perhaps
+// one patch in a hundred is judged wrongly; a hatch that stands elsewhere is a tenth of the patches.
 constexpr std::uint32_t kSolidPerDisplaced = 20;
 
-// Where the hull really lies, a wrong pose can have more surfels confirmed only by what came on board and
-// happens to be where the map has something fixed: of a class that is off less than two in ten are. Were
-// three quarters of the view such things, the right place would still keep 1 / (1 + 0.2 * 3) of its rival's.
+// Another place is possible only with this share of the surfels that are confirmed at the frame's own pose.
+// If that pose is wrong, it can have more than the right place only by things that came on board and happen
+// to be where it expects something fixed: by chance less than two in ten are. If three quarters of the view
+// were such things, the right place would have 1 / (1 + 0.2 * 3) as many as the wrong pose.
 constexpr double kLeastOfConfirmed = 0.6;
 
 IntegrityFinding judge_step(const PlaneStep& step) {
@@ -64,7 +70,7 @@ IntegrityFinding judge_step(const PlaneStep& step) {
   return {};
 }
 
-/// Of structures that disagree as many may be right as wrong.
+/// Are as many structures displaced as in place, or more? Then either may be where the map's ship has them.
 bool outnumbers(const StructureCount& count) {
   return count.displaced > 0 && count.displaced >= count.in_place;
 }

@@ -10,24 +10,25 @@ namespace {
 
 // A patch is judged on the last kMemory returns: with 3 cm of noise their median is good to 0.3 cm.
 constexpr float kMemory = 200.0F;
-constexpr double kFewest = 12.0;  // 1.25 * 3 cm / sqrt(12) = 1.1 cm of sigma: a quarter of kDisplaced
-// Noise of 1.1 cm (three sigma: 3.3 cm) or the bend that a pose does not take out (a parabola of L/1000 of a
-// ship of 120 m bends by 1 cm within 25 m) with the map's 0.5 cm.
+// With fewer returns it is not judged. The sigma of 12 is 1.25 * 3 cm / sqrt(12) = 1.1 cm, 1/4 of kDisplaced.
+constexpr double kFewest = 12.0;
+// Median offset up to which a patch is in place. It allows for three sigma of that noise (3.3 cm), the bend
+// that a pose does not take out (parabola of L/1000 of a ship of 120 m: 1 cm in 25 m), the map's 0.5 cm.
 constexpr double kDisplaced = 0.045;  // m
-// One wall that is set back is enough, so its limit is farther: 1.1 cm of noise and the 1.5 cm to which the
-// pose is known at least (integrity.cpp, kBlurred) are 1.9 cm; five sigma. More than half of the rays say so.
+// Offset behind a wall from which on it is set back, about five sigma, since one such wall is enough: 1.1 cm
+// of noise and 1.5 cm of the pose (the largest that is used, kBlurred in integrity.cpp) are 1.9 cm.
 constexpr double kSetBack = 0.1;         // m
-constexpr double kCoherent = 0.075;      // m: 2.5 sigma of a return
-constexpr double kLeastCoherence = 0.8;  // one surface has 0.99; a fifth may meet its edges or things on it
-constexpr double kMostThrough = 0.4;
-constexpr double kMostGoesOn = 0.25;
+constexpr double kCoherent = 0.075;      // m from the median: 2.5 sigma of a return
+constexpr double kLeastCoherence = 0.8;  // share so near: one surface has 0.99; a fifth may meet other things
+constexpr double kMostThrough = 0.4;     // share of the rays; above it the patch is gone
+constexpr double kMostGoesOn = 0.25;     // share of the looks beside a rim; above it a cover lies on the rim
 
-// A statement about the ship needs most of what is in view, and a second look at what was seen by chance:
-// what a frame of 16 lines leaves out the loader's motion and the noise show in the next ones.
+// `decided` needs so many frames that showed patches, so many judged patches and this share of those in view.
+// One frame of 16 lines leaves patches out; the loader's motion and the noise show them in the next frames.
 constexpr std::uint32_t kFramesToDecide = 9;
 constexpr std::uint32_t kFewestToDecide = 8;
 constexpr double kShareToDecide = 0.75;
-constexpr std::uint32_t kFewestStructures = 2;
+constexpr std::uint32_t kFewestStructures = 2;  // in place along the ship
 
 using Offsets = std::array<float, PatchEvidence::kBins>;
 constexpr double kBin = 2.0 * PatchEvidence::kReach / PatchEvidence::kBins;  // m
@@ -42,7 +43,7 @@ double median_offset(const Offsets& offsets, double total) {
   return (static_cast<double>(middle) + share) * kBin - PatchEvidence::kReach;
 }
 
-/// Of the bins whose middle lies between.
+/// Sum of the bins whose middle lies between `low` and `high`, m.
 double sum_between(const Offsets& offsets, double low, double high) {
   double sum = 0.0;
   for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -160,7 +161,7 @@ void PatchEvidence::judge_again(std::uint32_t patch) {
   Verdict& verdict = verdicts_[patch];
   const PatchFinding plane = judge(patch);
   if (plane.state == PatchState::unknown) {
-    return;  // too few looks: what it was before stands
+    return;  // too few returns: the earlier verdict stands
   }
   verdict.jumps_H = jumps_H_;
   verdict.state = plane.state;
@@ -191,7 +192,8 @@ void PatchEvidence::judge_strip_again(std::uint32_t patch) {
   }
 }
 
-/// What a patch says about its structure, in the direction that it faces.
+/// Votes for the patch's structure in the direction that it faces: a rim by its place across its length,
+/// another patch by its offset. A jump of the pose by more than kDisplaced that way since makes it displaced.
 void PatchEvidence::vote(std::uint32_t patch) {
   const MapPatch& mapped = mapped_[patch];
   const Verdict& verdict = verdicts_[patch];
@@ -205,9 +207,9 @@ void PatchEvidence::vote(std::uint32_t patch) {
   }
 }
 
-/// One structure takes the pose along wherever it stands; a second one that is in place too tells, as far as
-/// the map has two. Along the ship, since hatches differ there, and where none is in place what holds the
-/// pose can be moved. A coaming's top in place says that the hatches are as high above the deck as the map's.
+/// Besides enough frames and patches: two structures in place along the ship, where hatches differ, if the
+/// map has two. The pose moves with a single one wherever it stands; with none, movable things may hold it.
+/// And a rim in place, if the map has rims: the hatches are as high above the deck as the map's.
 bool PatchEvidence::has_seen_enough(const PatchReport& report) const {
   return frames_ >= kFramesToDecide && report.judged >= kFewestToDecide &&
          report.judged >= kShareToDecide * report.in_view && (report.rims_in_place > 0 || !has_rims_) &&

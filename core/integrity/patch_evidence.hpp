@@ -1,19 +1,20 @@
 // Is this the ship of the map? What the scans of the last seconds say about each of its patches.
 //
-// For each patch of the map (core/map/patches.hpp) a histogram of how far along its normal the rays really
-// ended, once the pose's own remaining error is taken off. From it:
-//   in place    coherent and within kDisplaced of its plane
+// A patch is a flat piece of the map of a few metres, or a piece of a rim, the top of a hatch's coaming (see
+// core/map/patches.hpp). Input: how far along the patch's normal the rays ended, once the pose's own
+// remaining error is taken off. A histogram of these offsets for each patch gives its state:
+//   in place    coherent (one surface), its median offset within kDisplaced
 //   displaced   coherent and farther off: a surface like the mapped one stands elsewhere - another ship
-//   gone        most rays go clearly through: a cover that moved, a fitting that was removed; a coaming is
-//               neither, so that a rim which is gone stands elsewhere too
+//   gone        more than kMostThrough of the rays go clearly through: a cover moved, a fitting was removed;
+//               a coaming cannot be, so that a rim which is gone counts as displaced
 //   scattered   no one surface: cargo against a wall, things on deck, dust
-//   covered     a rim that is higher and goes on over the hold: a cover lies on it
-//   set back    a coaming's wall that most rays find behind its place: whatever was put before a wall or
-//               taken from it since, it does not stand back
+//   covered     a rim's surface is higher and goes on over the hold: a cover lies on it
+//   set back    more than half of the rays find a coaming's wall at least kSetBack behind its place: nothing
+//               that is put before a wall or taken from it does that
 // Only displaced ones and those set back speak against the ship; for her speak structures that are in place
-// (structures.hpp). Hull frame, metres. State: kBins + 3 floats a patch, forgotten as new returns of the same
-// patch come in (kMemory), all of it by reset(). Thread rule: one owner. Cost: a few ns an observation, 50 ns
-// a patch in view.
+// (structures.hpp). Hull frame, metres. State: kBins + 3 floats a patch; old returns fade as new ones of the
+// same patch come in (kMemory), reset() forgets all. Thread rule: one owner. Cost: a few ns an observation,
+// 50 ns a patch in view.
 #pragma once
 
 #include <array>
@@ -32,23 +33,23 @@ enum class PatchState : std::uint8_t { unknown, in_place, displaced, gone, scatt
 struct PatchFinding {
   PatchState state = PatchState::unknown;
   double offset = 0.0;     // m, median
-  double coherence = 0.0;  // share of the returns within kCoherent of it
-  double returns = 0.0;    // that it stands on
+  double coherence = 0.0;  // share of the returns within kCoherent of the median
+  double returns = 0.0;    // returns and rays gone through that the state rests on
 };
 
-/// Over the patches that have been judged.
+/// What the patches say together, as of the last frame.
 struct PatchReport {
   std::uint32_t in_view = 0;         // seen in this frame
-  std::uint32_t judged = 0;          // of those in view: not unknown
+  std::uint32_t judged = 0;          // part of those in view: any state but unknown
   std::uint32_t solid = 0;           // in place or displaced, seen in this frame or remembered
   std::uint32_t displaced = 0;       // part of the solid; those set back are displaced too
   std::uint32_t displaced_rims = 0;  // part of the displaced
-  std::uint32_t set_back = 0;        // likewise
-  double median_offset = 0.0;        // of those of them whose offset is known, absolute, m
-  StructureCount along;              // by the solid ones that say so
-  StructureCount across;
-  std::uint32_t rims_in_place = 0;  // at their height
-  bool decided = false;             // since reset() enough of the ship has been judged
+  std::uint32_t set_back = 0;        // part of the displaced
+  double median_offset = 0.0;        // of the displaced whose offset is known, absolute, m; 0 = of none
+  StructureCount along;              // by the votes of patches that tell the place along the ship
+  StructureCount across;             // the same across her
+  std::uint32_t rims_in_place = 0;   // pieces of rims at their mapped height
+  bool decided = false;              // enough of the ship was judged, in this frame or earlier since reset()
 };
 
 class PatchEvidence {
@@ -61,18 +62,18 @@ class PatchEvidence {
   [[nodiscard]] std::uint32_t patches() const { return static_cast<std::uint32_t>(patches_.size()); }
 
   void begin_frame() { ++frame_; }
-  /// Since the last frame the pose was put elsewhere by `jump_H` (m), which no motion of the hull explains:
-  /// what was seen in place by then and not since stands aside of the new pose by as much. Returns of before
-  /// are dropped.
+  /// The pose has jumped by `jump_H` (m) since the last frame, which no motion of the hull explains.
+  /// Histograms are emptied. A patch in place before counts as displaced by the jump until judged again.
   void put_elsewhere(const Point& jump_H);
-  /// `returns` independent ones that lie `offset` (m, |offset| <= kReach) along the patch's normal.
+  /// Returns that lie `offset` (m, |offset| <= kReach) along the patch's normal, worth `returns` independent
+  /// ones.
   void add_offset(std::uint32_t patch, double offset, double returns);
-  /// A ray that went through.
+  /// A ray that went through the patch.
   void add_through(std::uint32_t patch);
-  /// Whether the surface goes on, as high as it was found here, over the hold beside it.
+  /// Whether a surface found on a rim goes on at the same height over the hold beside it, as a cover does.
   void add_beside(std::uint32_t patch, bool goes_on);
 
-  /// A ray on the top of a rim, or through the air beside it, at `s` across (m).
+  /// A ray that ended on the top of a rim (`on`) or went down beside it, at `s` across (m).
   void add_across(const RimPoint& rim, float s, bool on);
 
   [[nodiscard]] PatchFinding judge(std::uint32_t patch) const;
@@ -89,7 +90,7 @@ class PatchEvidence {
   };
   struct Strip {
     StripEvidence evidence;
-    float begin = 0.0F;  // as mapped, m
+    float begin = 0.0F;  // edges as mapped, m
     float end = 0.0F;
     std::uint32_t last_frame = 0;
   };
@@ -101,14 +102,14 @@ class PatchEvidence {
   bool has_rims_ = false;                            // the map
   std::unordered_map<std::uint32_t, Strip> strips_;  // of the patches that are rims
   struct Verdict {
-    PatchState state = PatchState::unknown;  // as of the last frame that saw enough
-    bool off_plane = false;                  // displaced, until it is seen in place, gone or covered
+    PatchState state = PatchState::unknown;  // the last one but unknown
+    bool off_plane = false;                  // displaced along its normal; until in place, covered or gone
     bool set_back = false;                   // until it is seen in place
-    bool aside = false;                      // a rim across its length, until it is seen in place
-    bool in_line = false;                    // a rim across its length, until it is seen aside
-    float by = 0.0F;                         // m; 0 = unknown
-    Point jumps_H = Point::Zero();           // of the pose, all of them until the patch was judged
-    Point strip_jumps_H = Point::Zero();     // likewise, until it was judged across
+    bool aside = false;                      // a rim, displaced across its length; until seen in line
+    bool in_line = false;                    // a rim, in place across its length; until seen aside
+    float by = 0.0F;                         // how far it is displaced, m; 0 = unknown
+    Point jumps_H = Point::Zero();           // PatchEvidence::jumps_H_ when `state` was found
+    Point strip_jumps_H = Point::Zero();     // the same for `aside` and `in_line`
   };
   void judge_again(std::uint32_t patch);
   void judge_strip_again(std::uint32_t patch);
@@ -117,8 +118,8 @@ class PatchEvidence {
 
   std::vector<Verdict> verdicts_;
   std::uint32_t frame_ = 0;
-  std::uint32_t frames_ = 0;       // that showed patches
-  Point jumps_H_ = Point::Zero();  // of the pose, summed up
+  std::uint32_t frames_ = 0;       // frames that showed patches
+  Point jumps_H_ = Point::Zero();  // sum of the pose's jumps since reset(), m
   bool decided_ = false;
 };
 

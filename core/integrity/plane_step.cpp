@@ -12,10 +12,10 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr std::size_t kFewestObservations = 12;
-constexpr int kSteps = 5;                // reweighting settles to a tenth of a millimetre in three
-constexpr double kKernel = 0.05;         // m: two to three sigma of a return against a 5 cm map
-constexpr double kSmallestSigma = 0.01;  // m: a LiDAR's range noise; a lucky scan is not better than that
-constexpr double kLength = 10.0;         // m, makes rotations comparable to translations: half a hatch
+constexpr int kSteps = 5;                // after three the result changes by less than 0.1 mm
+constexpr double kKernel = 0.05;         // m: two to three sigma of a return's distance from a 5 cm map
+constexpr double kSmallestSigma = 0.01;  // m: range noise of a LiDAR; robust_sigma() is never smaller
+constexpr double kLength = 10.0;         // m: makes rotations comparable to translations; half a hatch
 
 struct Normal {
   Matrix6 H = Matrix6::Zero();
@@ -42,7 +42,8 @@ Normal accumulate(std::span<const SurfelObservation> observations, const Eigen::
   return normal;
 }
 
-/// Sigma of one return: 1.4826 times the median absolute residual, each scaled to a single return.
+/// Sigma of one return: 1.4826 times the median absolute residual. Each residual is first multiplied by the
+/// root of the number of returns that its mean is worth.
 double robust_sigma(std::span<const SurfelObservation> observations, const Eigen::Vector3d& centre,
                     const Vector6& x) {
   std::vector<double> residuals;

@@ -8,15 +8,18 @@
 namespace hulltrack {
 namespace {
 
-constexpr float kMemory = 400.0F;  // rays: 0.1 of them lie within 3 cm of an edge, enough to place it to 1 cm
-constexpr float kFewest = 25.0F;   // rays of either kind
-// An edge is drawn by a beam 3 to 5 cm wide, its mean is good to 1 cm; the pose's own error is taken off to 2
-// cm where the surfaces that hold it are the hatches' own; the map's edges are known to half of its 5 cm
-// voxel.
-constexpr double kDisplaced = 0.06;        // m
-constexpr double kFewestExplained = 25.0;  // rays: five sigma of a count of 25 that ought to be none
-constexpr double kLeastExplained = 0.7;    // of those against: the strip is whole where it is said to be
-constexpr float kFarthest = 0.35F;         // m: farther aside another strip may be meant
+// Rays that are remembered. A tenth of 400 lies within 3 cm of an edge, enough to place it to 1 cm.
+constexpr float kMemory = 400.0F;
+constexpr float kFewest = 25.0F;  // rays of each kind; with fewer nothing is known
+// A strip is in place up to this shift, displaced beyond it. Errors that it allows for: an edge is seen by a
+// beam 3 to 5 cm wide, its mean is good to 1 cm; the pose's error is taken off to 2 cm where the surfaces
+// that hold the pose are the hatches' own; the map's edges are known to half of its 5 cm voxel.
+constexpr double kDisplaced = 0.06;  // m
+// A displaced strip needs a shift that explains more contradicting rays than kFewestExplained, five sigma of
+// a count of 25, and a larger share of them than kLeastExplained: the strip has to be whole at its new place.
+constexpr double kFewestExplained = 25.0;
+constexpr double kLeastExplained = 0.7;
+constexpr float kFarthest = 0.35F;  // m: largest shift tried; farther aside another strip may be meant
 
 }  // namespace
 
@@ -53,7 +56,7 @@ StripEvidence::Finding StripEvidence::judge(float begin, float end) const {
   if (on < kFewest || through < kFewest) {
     return finding;
   }
-  // balance[i]: rays through minus rays on in the first i bins.
+  // balance[i]: rays through minus rays on in the first i bins, so that any shift takes one subtraction.
   std::array<float, kBins + 1> balance{};
   for (std::size_t i = 0; i < kBins; ++i) {
     balance[i + 1] = balance[i] + through_[i] - on_[i];
@@ -65,7 +68,7 @@ StripEvidence::Finding StripEvidence::judge(float begin, float end) const {
     return on + balance[high] - balance[low];
   };
   float least = std::numeric_limits<float>::max();
-  int first = 0;  // and last of the best shifts
+  int first = 0;  // of the equally good best shifts
   int last = 0;
   const int reach = static_cast<int>(kFarthest / kBin);
   for (int shift = -reach; shift <= reach; ++shift) {

@@ -1,11 +1,12 @@
-// Does a coaming's top lie where the map has it, across its length? By its two edges.
+// Does a coaming's top lie where the map has it, across its length? Its two edges tell.
 //
-// Rays that meet the plane of a strip near it end on it or go down beside it: two histograms across the
-// strip, of those that ended on it and of those that went through. The strip's shift is the one that leaves
-// the fewest rays contradicting: through inside of it, on it outside. A cover or cargo at its height
-// contradicts on one side only and moves nothing. Hull frame, metres across the strip towards the hold.
-// State: 2 kBins floats a strip, forgotten as new rays come in (kMemory). Thread rule: one owner. Cost: 0.1
-// us a strip in view.
+// A strip is the top of one straight piece of coaming. Input: rays that meet the plane of the top in or near
+// the strip. Each one ended on the top or went down beside it; two histograms across the strip count the two
+// kinds. A ray contradicts the strip if it went down between the edges or ended at the top's height outside
+// of them. Output: the shift of both edges that leaves the fewest rays contradicting. A cover or cargo at the
+// same height contradicts beside one edge only, so that it does not change the shift.
+// Hull frame; metres across the strip, + towards the hold. State: 2 kBins floats a strip; old rays fade as
+// new ones come in (kMemory). Thread rule: one owner. Cost: 0.1 us a strip in view.
 #pragma once
 
 #include <array>
@@ -20,17 +21,17 @@ class StripEvidence {
   struct Finding {
     bool known = false;
     double shift = 0.0;      // m
-    double against = 0.0;    // rays that contradict the strip as it is mapped
-    double explained = 0.0;  // of those, what the shift explains
+    double against = 0.0;    // rays that contradict the strip at its mapped place
+    double explained = 0.0;  // how many fewer contradict it at the shift
     [[nodiscard]] bool displaced() const;
     [[nodiscard]] bool in_place() const;
   };
 
-  /// Before the rays of a new frame: forgets so that kMemory rays are left at most.
+  /// Call it before the rays of a new frame. Scales the counts down to kMemory rays at most.
   void begin_frame();
-  /// `s` in -kAside .. kAside; others are left out.
+  /// A ray at `s` (m) that ended on the top (`on`) or went down. Outside of -kAside .. kAside it is ignored.
   void add(float s, bool on);
-  /// For a strip that is mapped from `begin` to `end`.
+  /// For a strip whose mapped edges are at `begin` and `end`, m.
   [[nodiscard]] Finding judge(float begin, float end) const;
 
  private:

@@ -1,9 +1,12 @@
 // Do independent parts of the ship agree on where she lies, along her and across her?
 //
-// The pose follows whatever surfaces fix it. A sister ship's hatch that lies 20 cm farther aft takes the pose
-// along, and in sight of that hatch alone nothing contradicts; the next hatch, the house or the forecastle
-// do. So what stands in place or elsewhere is counted by structures: all that belongs to one hatch is one,
-// and of the rest what the map has not kApart from its neighbour in the direction that it faces. Metres, H.
+// Input: votes of the map's patches (flat pieces, see core/map/patches.hpp): in place or displaced. Output:
+// how many structures are in place, and how many displaced, in each of the two directions. A structure is
+// one voice: all patches of one hatch, or neighbours outside of hatches that are less than kApart from each
+// other in the direction that they face.
+// Reason: the pose follows whatever surfaces fix it. If a sister ship's hatch lies 20 cm farther aft, the
+// pose moves with it, and nothing contradicts while that hatch alone is in sight. The next hatch, the house
+// or the forecastle does. Metres, H.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +18,8 @@
 namespace hulltrack {
 
 struct StructureCount {
-  std::uint32_t in_place = 0;   // as most of their patches say
-  std::uint32_t displaced = 0;  // likewise
+  std::uint32_t in_place = 0;   // more of their patches are in place than displaced
+  std::uint32_t displaced = 0;  // more are displaced; a tie is counted nowhere
 };
 
 /// The structures of one map, and what a frame's patches say about them.
@@ -27,12 +30,12 @@ class Structures {
   Structures() = default;
   explicit Structures(std::span<const MapPatch> mapped);
 
-  /// How many the map has that say where they stand in this direction: transverse along the ship,
-  /// longitudinal across her.
+  /// How many structures of the map face this way. Transverse ones tell the place along the ship,
+  /// longitudinal ones the place across her.
   [[nodiscard]] std::uint32_t mapped(SurfaceClass faces) const;
 
   void clear_votes();
-  /// That a patch is in place or displaced in the direction that it faces; none if it faces neither.
+  /// A patch is in place or displaced in the direction that it faces. Ignored if that is neither of the two.
   void vote(std::uint32_t patch, bool displaced);
   [[nodiscard]] StructureCount count(SurfaceClass faces) const;
 
@@ -44,7 +47,7 @@ class Structures {
   };
   void number(SurfaceClass faces, std::span<const MapPatch> mapped);
 
-  std::vector<std::uint32_t> of_;  // per patch
+  std::vector<std::uint32_t> of_;  // per patch: its structure's index, or kNone
   std::vector<Structure> structures_;
 };
 

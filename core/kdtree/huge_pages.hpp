@@ -1,9 +1,10 @@
-// Memory for large arrays that are read all over: on huge pages where the system has them.
+// Memory for large arrays that are read at random places: on huge pages where the system has them.
 //
-// A tree over two million points spans some 7,000 pages of 4 KiB, more than a processor's address cache
-// holds, so that a search waits for addresses as well as for data. Arrays of at least one huge page begin on
-// its boundary, and the kernel is advised to use them (Linux: transparent huge pages, "madvise" or "always").
-// It may decline: then the pages are small and nothing else changes. Failure: std::bad_alloc.
+// A tree over two million points spans some 7,000 pages of 4 KiB. That is more than a processor's address
+// cache (TLB) holds, so that a search waits for addresses as well as for data. Arrays of at least one huge
+// page begin on its boundary, and the kernel is advised to use huge pages (Linux: transparent huge pages,
+// "madvise" or "always"). If it declines, the pages are small and nothing else changes.
+// Failure: std::bad_alloc.
 #pragma once
 
 #include <sys/mman.h>

@@ -1,10 +1,11 @@
 // Which point of a fixed cloud is nearest to a query? Exact answers, bounded by a radius.
 //
-// Frames: whatever frame the cloud is in; metres, float. Immutable after construction, so any number
-// of threads may query. Points are copied into the tree (leaf order, structure of arrays); indices in
-// answers are those of the cloud given to the constructor.
-// Failure: none; an empty cloud gives empty answers; points with a NaN or infinity are left out, and a
-// query with one finds nothing. Cost: about 17 bytes a point; a query looks at a handful of leaves.
+// Frames: whatever frame the cloud is in; metres, float. Immutable after construction, so that any number of
+// threads may query. Points are copied into the tree (leaf order, structure of arrays). Indices in answers
+// are those of the cloud given to the constructor.
+// Cannot fail. An empty cloud gives empty answers. Points of the cloud with a NaN or infinity are left out,
+// and a query point with one finds nothing.
+// Cost: about 17 bytes a point; a query looks at a handful of leaves.
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ struct Neighbour {
   float squared_distance;  // m^2
 };
 
-/// The nearest few points of a query with their coordinates, and how far away all others are: what is
-/// needed to answer again for a query that has moved a little, without asking the tree.
+/// The nearest few points of a query with their coordinates, and how far away all others are at least. With
+/// these a caller can answer for a query that has moved a little, without a search.
 struct Neighbourhood {
   static constexpr std::size_t kCapacity = 8;
 
@@ -37,7 +38,7 @@ struct Neighbourhood {
   float clear_radius;                          // every point not listed is at least this far away, m
 };
 
-/// What a tree is built for. Answers are the same.
+/// What a tree is built for. It decides the cost, not the answers.
 enum class TreeUse {
   many_searches,  // the map: built once
   one_batch,      // a scan: built in less than half of the time, searched in twice the time
@@ -61,14 +62,15 @@ class KdTree {
   /// replaced. Several times as fast as nearest_k(), which sorts.
   void within(const Point& query, float radius, Cloud& out) const;
 
-  /// As nearest() for many queries at once: out[i] answers queries[i], kNone where there is nothing.
-  /// Faster, because searches wait for memory together. `out` has the size of `queries`.
+  /// As nearest() for many queries at once: out[i] answers queries[i], with index kNone where there is
+  /// nothing. Faster, because one search computes while others wait for memory. `out` has the size of
+  /// `queries`.
   void nearest(std::span<const Point> queries, float radius, std::span<Neighbour> out) const;
 
-  /// For each query the points with distance < its radius (m, > 0) that are not farther than the nearest one
-  /// and `margin` (m, >= 0); if these are more than a Neighbourhood holds, the nearest of them. `radii` and
-  /// `out` have the size of `queries`. A query that is not finite has no neighbours and clear_radius = its
-  /// radius.
+  /// For each query the points with distance < its radius (m, > 0) that are at most `margin` (m, >= 0)
+  /// farther than the nearest one. If these are more than a Neighbourhood holds, the nearest of them. `radii`
+  /// and `out` have the size of `queries`. A query that is not finite has no neighbours and clear_radius =
+  /// its radius.
   void neighbourhoods(std::span<const Point> queries, std::span<const float> radii, float margin,
                       std::span<Neighbourhood> out) const;
 

@@ -9,12 +9,12 @@
 namespace hulltrack::kdtree {
 namespace {
 
-// Below this many points a comparison select is used: a histogram has little to count.
+// Ranges of fewer points are split by std::nth_element: for so few a histogram does not pay.
 constexpr std::size_t kSmallRange = 192;
 // More bins than this no longer fit the first-level cache beside the points.
 constexpr std::size_t kMaxBins = 1024;
 
-// Points on their way into the tree: they stand in `here`, and `spare` has room for as many.
+// A range of points not yet in the tree: they are in `here`; `spare` is a buffer of the same size.
 struct Range {
   std::span<Element> here;
   std::span<Element> spare;
@@ -29,7 +29,8 @@ void select_by_comparison(std::span<Element> range, std::size_t rank, std::size_
       [axis](const Element& a, const Element& b) { return a.position[axis] < b.position[axis]; });
 }
 
-// Which of `count` equal bins of a side holds a coordinate. Monotonic, also with its rounding.
+// Which of `count` equal bins of a side holds a coordinate. Rounding keeps the order: a larger coordinate
+// never gets a lower bin.
 struct Binning {
   float origin;
   float scale;
@@ -41,7 +42,8 @@ struct Binning {
   }
 };
 
-// Moves `range` to its spare buffer such that its first `rank` points are nowhere above the rest on `axis`.
+// Moves `range` to its spare buffer such that none of its first `rank` points is above one of the rest on
+// `axis`.
 void select_by_histogram(Range& range, std::size_t rank, std::size_t axis, const Binning& bin_of) {
   std::array<std::uint32_t, kMaxBins> histogram;
   std::fill_n(histogram.begin(), bin_of.count, 0U);
@@ -66,7 +68,8 @@ void select_by_histogram(Range& range, std::size_t rank, std::size_t axis, const
   select_by_comparison(range.here.subspan(below, in_pivot), rank - below, axis);
 }
 
-// Orders `range` such that its first `rank` points (0 < rank < size) lie on one side of the rest.
+// Orders `range` such that its first `rank` points (0 < rank < size) come before the rest along the longest
+// side of `bounds`.
 void split_at_rank(Range& range, std::size_t rank, const Bounds& bounds) {
   const std::size_t axis = bounds.longest_axis();
   const float side = bounds.max[axis] - bounds.min[axis];
@@ -75,7 +78,7 @@ void split_at_rank(Range& range, std::size_t rank, const Bounds& bounds) {
   }
   const std::size_t bins = std::min(kMaxBins, range.size() / 4);
   const float scale = static_cast<float>(bins) / side;
-  // A side that overflows, or is so short that its scale does, has no bins.
+  // If the side, or the scale of a very short side, overflows a float, there are no bins.
   if (range.size() < kSmallRange || !std::isfinite(side) || !std::isfinite(scale)) {
     select_by_comparison(range.here, rank, axis);
   } else {
@@ -100,7 +103,7 @@ class Builder {
       return std::move(layout_);
     }
     const std::size_t leaves = (layout_.size + kLeafSize - 1) / kLeafSize;
-    std::size_t children_leaves = 1;  // leaves below one child of the root, at most
+    std::size_t children_leaves = 1;  // most leaves below one child of the root
     while (children_leaves * kFanOut < leaves) {
       children_leaves *= kFanOut;
     }
@@ -155,7 +158,7 @@ class Builder {
     }
     const std::size_t left_parts = parts / 2;
     const std::size_t left_leaves = range.leaves * left_parts / parts;
-    // Rounded up: then neither side has more points than its leaves have room for.
+    // Rounded up, so that neither side has more points than its leaves can hold.
     const std::size_t left_size = (range.size() * left_leaves + range.leaves - 1) / range.leaves;
     split_at_rank(range, left_size, bounds);
     divide({range.here.first(left_size), range.spare.first(left_size), left_leaves}, left_parts, children);

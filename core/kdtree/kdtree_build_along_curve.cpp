@@ -7,7 +7,7 @@
 namespace hulltrack::kdtree {
 namespace {
 
-/// The finite points of a cloud in the order of the curve.
+/// The finite points of a cloud in the order of the space-filling curve.
 std::vector<Element> along_curve(std::span<const Point> cloud) {
   const std::vector<std::uint32_t> order = z_order(cloud);
   std::vector<Element> elements;
@@ -19,7 +19,7 @@ std::vector<Element> along_curve(std::span<const Point> cloud) {
   return elements;
 }
 
-/// What stands at one height of the tree: its nodes and the box of each.
+/// All nodes at one height of the tree, and the box of each.
 struct Level {
   std::vector<Node> nodes;
   std::vector<Bounds> boxes;

@@ -1,8 +1,9 @@
-// How the kd-tree lies in memory: wide nodes of tight boxes over full leaves, both in SIMD order.
+// How the kd-tree lies in memory: nodes with the tight boxes of many children, over full leaves, both in SIMD
+// order.
 //
-// A node keeps the boxes of up to 16 children side by side, so that one or two vector operations a plane test
-// all of them; siblings are contiguous, so that one index addresses them. All leaves lie at the same
-// depth and hold up to 32 points. Unused lanes are at infinity and never match.
+// A node keeps the boxes of up to 16 children side by side, so that one or two vector operations compare a
+// query with one side of all of them. Siblings are contiguous, so that the index of the first one is enough.
+// All leaves lie at the same depth and hold up to 32 points. Unused lanes are at infinity and never match.
 // Internal to core/kdtree. Immutable once built; see kdtree_build.hpp and kdtree_query.hpp.
 #pragma once
 
@@ -13,19 +14,19 @@
 
 namespace hulltrack::kdtree {
 
-inline constexpr std::size_t kFanOut = 16;
-inline constexpr std::size_t kLanes = 8;  // floats that one operation of the searches works on
-inline constexpr std::size_t kLeafSize = 32;
+inline constexpr std::size_t kFanOut = 16;    // children of a node, at most
+inline constexpr std::size_t kLanes = 8;      // floats that one operation of the searches works on
+inline constexpr std::size_t kLeafSize = 32;  // points of a leaf, at most
 
 /// Set in Layout::first_child when the children are leaves.
 inline constexpr std::uint32_t kLeafFlag = 0x80000000U;
 
-/// 16^7 leaves of 32 are more points than an index can count.
+/// Levels of nodes: 16^7 leaves of 32 points are more than a 32-bit index can count.
 inline constexpr std::size_t kMaxHeight = 7;
 
 inline constexpr std::size_t kCacheLine = 64;
 
-/// Searches under way at a time in a batch: enough to hide the memory's latency (measured).
+/// Searches of a batch that run in turn: enough to hide the memory's latency (measured).
 inline constexpr std::size_t kInterleaved = 12;
 
 struct alignas(kCacheLine) Node {

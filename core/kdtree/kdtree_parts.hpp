@@ -1,4 +1,4 @@
-// What the builders of the kd-tree share: points on their way into it, tight boxes, leaves and nodes.
+// What the builders of the kd-tree share: points not yet in the tree, tight boxes, leaves and nodes.
 //
 // Internal to core/kdtree. Unused lanes are at infinity: no query is near them.
 #pragma once
@@ -17,6 +17,7 @@ namespace hulltrack::kdtree {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// A point and its index in the cloud, as one register.
 struct alignas(16) Element {
   std::array<float, 3> position;
   std::uint32_t index;
@@ -40,7 +41,7 @@ struct Bounds {
   }
 };
 
-// The fourth lane carries the index's bits along; nobody reads it.
+// The fourth lane of a load is the element's index; it is not used.
 inline Bounds bounds_of(std::span<const Element> range) {
   Bounds bounds;
   __m128 low = _mm_loadu_ps(bounds.min.data());

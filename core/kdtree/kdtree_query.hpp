@@ -1,8 +1,9 @@
-// The searches of the kd-tree, compiled once for every instruction set that they exist for.
+// The searches of the kd-tree, compiled once for each instruction set (SSE2, AVX2).
 //
-// Every set gives the same bits: the same float operations in the same order, no fused multiply-add.
-// A point's squared distance is (dx * dx + dy * dy) + dz * dz in float; a box's distance is rounded by the
-// same operations and so never exceeds that of a point inside it, which makes pruning exact.
+// All sets give the same answers, bit for bit: the same float operations in the same order, no fused
+// multiply-add. A point's squared distance is (dx * dx + dy * dy) + dz * dz in float. A box's distance is
+// computed and rounded in the same way, so that it never exceeds that of a point in the box: a search that
+// skips boxes beyond its limit misses no point.
 // Internal to core/kdtree. Thread rule: pure functions on an immutable layout. No failure.
 #pragma once
 
@@ -19,21 +20,22 @@ namespace hulltrack::kdtree {
 
 inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFFU;
 
-/// A point found: where it stands in the layout (or kNoSlot), its squared distance in m^2.
+/// A point found.
 struct Hit {
-  std::uint32_t slot;
-  float squared_distance;
+  std::uint32_t slot;      // its slot in the layout; kNoSlot: nothing found
+  float squared_distance;  // m^2
 };
 
-/// The largest float below radius^2: turns "distance < radius" into the searches' "squared <= limit".
-/// Neighbouring positive floats have neighbouring bit patterns.
+/// The largest float below radius^2. The searches take points with "squared distance <= limit"; with this
+/// limit they take those with "distance < radius". Neighbouring positive floats have neighbouring bit
+/// patterns.
 [[nodiscard]] inline float limit_below(float radius) {
   const float squared = radius * radius;
   return radius > 0.0F && squared > 0.0F ? std::bit_cast<float>(std::bit_cast<std::uint32_t>(squared) - 1)
                                          : -1.0F;
 }
 
-/// Takes points of a leaf, one bit each; `where` is the caller's.
+/// Takes points of a leaf: bit i of `points` stands for point i. `where` is the caller's own data.
 using LeafSink = void (*)(const Leaf& leaf, std::uint32_t points, void* where);
 
 struct Kernels {
@@ -56,7 +58,7 @@ struct Kernels {
 
 [[nodiscard]] const Kernels& sse2_kernels();
 
-/// Must only be called into where avx2_available().
+/// The kernels must only be called if avx2_available().
 [[nodiscard]] const Kernels& avx2_kernels();
 [[nodiscard]] bool avx2_available();
 

@@ -1,11 +1,12 @@
-// The searches of the kd-tree in terms of `Lanes`, eight floats of whatever instruction set.
+// The searches of the kd-tree, written in terms of `Lanes`: eight floats, in the registers of one instruction
+// set.
 //
 // No include guard: each kdtree_query_*.cpp defines Lanes and HULLTRACK_TARGET (the attribute that
 // allows the instructions) in a namespace of its own and includes this file there. Everything is inline
-// code without calls into the standard library, so that no other part of the program can ever end up
-// with code that its processor lacks.
+// code without calls into the standard library: the linker then cannot give another part of the program a
+// function with instructions that the processor lacks.
 
-// In the order of use.
+// In this order: each needs the one before.
 // clang-format off
 #include "core/kdtree/kdtree_query_distances.hpp"
 #include "core/kdtree/kdtree_query_traversal.hpp"

@@ -1,6 +1,7 @@
-// What does a search gather: the nearest point, the nearest few with a margin, the nearest k, all?
+// What a search gathers (the Collector of kdtree_query_traversal.hpp): the nearest point, the nearest few
+// with a margin, the nearest k, or all within the limit.
 //
-// A part of kdtree_query_body.hpp, which says what is special about it.
+// A part of kdtree_query_body.hpp, whose rules hold here.
 
 HULLTRACK_TARGET inline std::uint32_t first_slot(std::uint32_t leaf) {
   return leaf * static_cast<std::uint32_t>(kLeafSize);
@@ -43,7 +44,8 @@ HULLTRACK_TARGET inline bool comes_before(const Layout& layout, const Hit& a, co
          (a.squared_distance == b.squared_distance && layout.index[a.slot] < layout.index[b.slot]);
 }
 
-// Puts `hit` into its place among the best `count` so far; the last one drops out when they are full.
+// Inserts `hit` into `hits`, of which the first `count` are in order; if all are in use the last one drops
+// out. Returns the new count.
 HULLTRACK_TARGET inline std::size_t insert(const Layout& layout, const Hit& hit, std::span<Hit> hits,
                                            std::size_t count) {
   std::size_t at = count;
@@ -62,8 +64,8 @@ HULLTRACK_TARGET inline std::size_t insert(const Layout& layout, const Hit& hit,
   return count;
 }
 
-// The nearest few points among those not farther than the nearest one and a margin. They are gathered
-// unsorted, which branches little; only when they are too many the nearest are sorted out.
+// The points that are at most a margin farther than the nearest one; of more than kFew the nearest. They are
+// gathered unsorted, with few branches; the nearest are sorted out only when there are too many.
 struct NeighbourhoodCollector {
   static constexpr std::size_t kFew = Neighbourhood::kCapacity;
   static constexpr std::size_t kRoom = kFew + kLeafSize;
@@ -93,7 +95,7 @@ struct NeighbourhoodCollector {
       return;
     }
     const float reach = __builtin_sqrtf(best) + margin;
-    const float squared_reach = reach * reach > best ? reach * reach : best;  // never below by rounding
+    const float squared_reach = reach * reach > best ? reach * reach : best;  // not below best by rounding
     if (squared_reach < limit) {
       limit = squared_reach;
       clear_radius = reach;
@@ -102,7 +104,7 @@ struct NeighbourhoodCollector {
       keep_few(layout);
     }
     for (std::size_t i = 0; i < kLeafSize; i += kCacheLine / sizeof(std::uint32_t)) {
-      __builtin_prefetch(&layout.index[first_slot(leaf) + i]);  // finish() will want it
+      __builtin_prefetch(&layout.index[first_slot(leaf) + i]);  // finish() reads it
     }
     alignas(32) float squared[kLeafSize];
     distances.store_to(squared);
@@ -112,7 +114,7 @@ struct NeighbourhoodCollector {
     }
   }
 
-  // Drops what the limit has overtaken and, if still necessary, all but the nearest few.
+  // Drops hits that the limit, lowered since, excludes; if there are still too many, all but the nearest few.
   HULLTRACK_TARGET void keep_few(const Layout& layout) {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -181,7 +183,7 @@ struct KNearestCollector {
   }
 };
 
-// All points.
+// All points within the limit.
 struct WithinCollector {
   struct Task {
     float limit;

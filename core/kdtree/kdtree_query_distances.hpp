@@ -1,6 +1,6 @@
-// How far is a query from the boxes of a node, from the points of a leaf?
+// Squared distances of a query from the boxes of a node and from the points of a leaf.
 //
-// A part of kdtree_query_body.hpp, which says what is special about it.
+// A part of kdtree_query_body.hpp, whose rules hold here.
 
 struct Query {
   Lanes x, y, z;
@@ -14,7 +14,7 @@ HULLTRACK_TARGET inline Lanes squared_norm(Lanes dx, Lanes dy, Lanes dz) {
   return add(add(mul(dx, dx), mul(dy, dy)), mul(dz, dz));
 }
 
-// How far q lies outside of [low, high], 0 inside.
+// Distance of q from the interval [low, high]; 0 inside.
 HULLTRACK_TARGET inline Lanes outside(Lanes q, Lanes low, Lanes high) {
   return max(max(sub(low, q), sub(q, high)), zero());
 }
@@ -49,7 +49,7 @@ struct LeafDistances {
     }
   }
 
-  // One bit a point.
+  // Which points are within the limit: bit i stands for point i of the leaf.
   HULLTRACK_TARGET std::uint32_t within(float limit) const {
     const Lanes l = broadcast(limit);
     return at_most(block[0], l) | (at_most(block[1], l) << 8) | (at_most(block[2], l) << 16) |

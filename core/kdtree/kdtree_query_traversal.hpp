@@ -1,10 +1,10 @@
-// Which nodes and leaves does a search visit, and in which order: several searches in turn, nearest first.
+// Which nodes and leaves a search visits: the nearest first. Several searches run in turn.
 //
-// A part of kdtree_query_body.hpp, which says what is special about it. What a search is for is a Collector:
-// start(), scan() of a leaf, finish(), and `limit`, the tightest bound so far (inclusive, m^2): farther away
-// nothing is of interest. Its Task says what is asked of all queries of a batch.
+// A part of kdtree_query_body.hpp, whose rules hold here. What a search gathers is up to its Collector:
+// start(), scan() of a leaf, finish(), and `limit`, the largest squared distance that is still of interest
+// (inclusive, m^2). The Collector's Task holds what is asked for all queries of a batch.
 
-// An opened node with children that are still to be visited.
+// A visited node with children that are still to be visited.
 struct alignas(32) Frame {
   float squared_distance[kFanOut];
   std::uint32_t first_child;
@@ -27,13 +27,14 @@ HULLTRACK_TARGET inline void prefetch(const Layout& layout, std::uint32_t child)
   }
 }
 
-// One search on its way: a query, what it has found, the opened nodes from the root to where it stands.
+// One search: its query, what it has found so far, and the visited nodes from the root down that have
+// children left to visit.
 template <typename Collector>
 struct Search {
   Point query;
   std::uint32_t next;  // the child to visit next
-  std::size_t number;
-  std::size_t depth;
+  std::size_t number;  // of the query in its batch
+  std::size_t depth;   // frames in use
   Collector found;
   Frame frames[kMaxHeight];
 
@@ -46,7 +47,7 @@ struct Search {
     next = 0;
   }
 
-  // Visits one node or leaf, then chooses and fetches the next; false when nothing is left.
+  // Visits one node or leaf, then chooses the next one and prefetches it; false when nothing is left.
   HULLTRACK_TARGET bool step(const Layout& layout) {
     const Query q = broadcast(query);
     if ((next & kLeafFlag) == 0) {
@@ -111,7 +112,8 @@ struct Search {
   }
 };
 
-// The queries of a batch one after the other; those that nothing can be near are answered on the way.
+// Hands out the queries of a batch one after the other. Queries that are not finite, or all if the tree is
+// empty, are answered here with nothing.
 template <typename Collector, typename Out>
 struct Batch {
   const Layout& layout;
@@ -120,7 +122,7 @@ struct Batch {
   Out* out;
   std::size_t next = 0;
 
-  // Sets `search` on the next query; false when there are no more.
+  // Starts `search` with the next query; false when there are no more.
   HULLTRACK_TARGET bool start_next(Search<Collector>& search) {
     for (; next < queries.size(); ++next) {
       if (is_searchable(layout, queries[next])) {

@@ -1,8 +1,8 @@
 // Where were the joints at time t? Interpolates between samples, never holds or extrapolates.
 //
-// An answer exists only if accepted samples bracket t, at most kMaxGap apart. Outside it the reason
-// is stated, because the caller acts on it: after the newest sample one may wait, before the oldest
-// or inside a gap one may not.
+// An answer exists only if samples lie before and after t (or at t), at most kMaxGap apart. Otherwise the
+// reason is given, because the caller acts on it: after the newest sample one may wait for the next; before
+// the oldest one, or in a gap, there is nothing to wait for.
 // Bounded memory: the newest `capacity` samples. Thread rule: one owner; copy to hand over.
 // Cost: O(log n) a look-up.
 #pragma once
@@ -35,19 +35,19 @@ class JointHistory {
 
   [[nodiscard]] Answer at(MeasurementTime t) const;
 
-  /// Between the two samples around t (from a sample on; at the newest one, up to it); nothing where at()
-  /// has no answer, nor of a single sample.
+  /// Joints and their rates at t, from the samples around t: at a sample from that one and the next, at the
+  /// newest from the last two. Nothing where at() has no answer, or if there is a single sample.
   struct Motion {
     Joints joints;        // at t
-    Joints rate;          // a second
-    Nanoseconds spacing;  // of the samples
+    Joints rate;          // per second: m/s, rad/s
+    Nanoseconds spacing;  // between the two samples
   };
   [[nodiscard]] std::optional<Motion> motion_at(MeasurementTime t) const;
 
   /// ok if every time in [first, last] has an answer; otherwise the first reason met.
   [[nodiscard]] Lookup covers(MeasurementTime first, MeasurementTime last) const;
 
-  /// Whether an answer in [first, last] hangs on a sample that is on trial.
+  /// Whether an answer in [first, last] depends on a sample that is on trial (see joint_gate.hpp).
   [[nodiscard]] bool on_trial(MeasurementTime first, MeasurementTime last) const;
 
   [[nodiscard]] std::optional<JointSample> newest() const;

@@ -6,7 +6,8 @@
 namespace hulltrack {
 namespace {
 
-/// Below this a line says too little of the speed: 25 mm of jitter over it are .25 m/s, half of full speed.
+/// Shorter lines are not used. They say too little of the speed: 25 mm of jitter over this time are .25 m/s,
+/// half of full speed.
 constexpr Nanoseconds kShortestLine = std::chrono::milliseconds(100);
 constexpr Nanoseconds kStill = std::chrono::milliseconds(500);
 
@@ -44,14 +45,14 @@ std::optional<JointTrack::Misfit> JointTrack::too_fast(const JointSample& sample
   return std::nullopt;
 }
 
-/// Of a machine that speeds up by a, a line over T has the speed of T / 2 ago, and its end is off by
-/// a T^2 / 12.
+/// A misfit if `sample` is farther from where the line leads than a machine can be. While a machine speeds up
+/// by a, a line fitted over the time T has the speed of T / 2 ago, and its end is off by a T^2 / 12.
 std::optional<JointTrack::Misfit> JointTrack::off_the_line(const Line& line, const JointSample& sample,
                                                            MeasurementTime reach_until) const {
   const JointValues value = values_of(sample.joints);
   const double T = to_seconds(line.span);
   const double since_mean = to_seconds(sample.time - line.time);
-  const double h = std::max(0.0, to_seconds(reach_until - line.time) - T / 2.0);  // since its end
+  const double h = std::max(0.0, to_seconds(reach_until - line.time) - T / 2.0);  // since the line's end
   const double bend = h * h / 2.0 + h * T / 2.0 + T * T / 12.0;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const double off = std::abs(value[i] - line.value[i] - line.rate[i] * since_mean);

@@ -13,7 +13,7 @@ struct Joints {
 };
 
 struct JointSample {
-  MeasurementTime time;  // when the values were true: PLC latency already subtracted
+  MeasurementTime time;  // when the values were true: the PLC's latency is already subtracted
   Joints joints;
   bool on_trial = false;  // the joint gate does not believe it yet; see joint_gate.hpp
 };

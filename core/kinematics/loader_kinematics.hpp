@@ -1,9 +1,9 @@
 // Forward kinematics of the gantry loader: joints -> T_W_L of each LiDAR.
 //
 // T_W_L = Trans_x(d_x) * T_slew * Rot_z(theta_r) * T_luff * Rot_y(theta_p) * T_lidar
-// (the paper's T_trans * T_rot * T_tilt, 2.2, with the installation transforms between the joints).
-// The paper prints s_world = T_init^-1 s; with these factors the forward chain already takes L to W,
-// so no inverse is applied. Metres and radians. Pure.
+// This is T_trans * T_rot * T_tilt of Guo 2025, 2.2, with the installation transforms between the joints.
+// The paper inverts its chain (s_world = T_init^-1 s). No inverse is applied here: with these factors the
+// chain already takes L to W. Metres and radians. Pure.
 #pragma once
 
 #include <vector>
@@ -13,13 +13,13 @@
 
 namespace hulltrack {
 
-/// Constant installation transforms; identity gives the textbook chain.
+/// Constant installation transforms; with identities the chain has the three joints alone.
 struct MachineConfig {
   Pose slew = Pose::Identity();  // gantry -> slewing axis
   Pose luff = Pose::Identity();  // slewing platform -> luffing axis
 };
 
-/// T_W_B: the frame of the boom (in which mounts T_lidar are given) in W.
+/// T_W_B: the frame of the boom in W. Mounts T_lidar are given in the boom's frame.
 [[nodiscard]] Pose boom_pose(const MachineConfig& machine, const Joints& joints);
 
 /// T_W_L for a LiDAR mounted at T_lidar on the boom.

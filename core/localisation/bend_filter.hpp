@@ -1,8 +1,9 @@
-// How far is the hull bent, from many frames?
+// Averages the bend of the hull (hog and sag, bend.hpp) over frames.
 //
-// A Kalman filter of one constant that wanders slowly. One frame sees a stretch of some 40 m and knows the
-// bend to a few centimetres; frames of one second share their view and with it their errors, so each counts
-// a kShared-th. Metres, + sag. A plain value. No failure: measurements that are not finite are left out.
+// In: each frame's own estimate with its sigma. Out: the mean and its sigma. A Kalman filter of one number
+// that drifts slowly. One frame sees some 40 m of the ship and knows the bend to a few centimetres. About ten
+// frames in a row see the same stretch with the same errors, so each frame's variance is first multiplied by
+// kShared. Metres, + sag. A plain value. No failure: measurements that are not finite are left out.
 #pragma once
 
 #include <algorithm>
@@ -16,18 +17,19 @@ namespace hulltrack {
 
 class BendFilter {
  public:
-  /// A hull bends by up to a thousandth of its length (class rules for the still water bending of a loading
-  /// ship): the 1-sigma before the first frame.
+  /// Before the first frame the bend is 0 with a sigma of `length` / 1000, and the sigma never grows beyond
+  /// that: a hull bends by up to a thousandth of its length (class rules for the still water bending of a
+  /// loading ship).
   explicit BendFilter(double length) : bend_{0.0, length / 1000.0}, widest_(bend_.sigma) {}
 
   static constexpr double kShared = 10.0;
-  /// How fast the estimate of before loses its worth: each second adds this, squared, to its variance. Over a
-  /// quarter of an hour, in which a hold can be filled, that is a sigma of 3 cm. m / sqrt(s)
+  /// Each second adds kWander^2 to the variance, so that old frames lose weight. Over a quarter of an hour,
+  /// in which a hold can be filled, that is a sigma of 3 cm. m / sqrt(s)
   static constexpr double kWander = 0.001;
 
   [[nodiscard]] const Bend& now() const { return bend_; }
 
-  /// One frame's own estimate, without what was known before.
+  /// `d`, `sigma`: what this frame alone says, without the average that went into its fit.
   void update(MeasurementTime time, double d, double sigma) {
     if (!std::isfinite(d) || !(sigma > 0.0) || !std::isfinite(sigma)) {
       return;

@@ -13,8 +13,8 @@ struct HullConfig {
   std::optional<Box> region;                                    // in W; empty = no crop
   Box envelope{{-15.0F, -2.0F, -10.0F}, {15.0F, 2.0F, 10.0F}};  // displacements a berthed ship can have, m
   double max_speed = 0.3;                                       // m/s
-  // A moored ship lists by 1 deg, by 3 where her pilot is called, trims by 1 to 3 m over her length and is
-  // held in line with the quay by her lines: beyond these, rad, the pose is not hers.
+  // Beyond these angles the pose is not the ship's, rad. A moored ship lists by 1 deg, by 3 deg when her
+  // pilot is called; she trims by 1 to 3 m over her length; her lines hold her parallel to the quay.
   double max_heel = radians(4.0);
   double max_trim = radians(2.0);
   double max_yaw = radians(3.5);

@@ -9,22 +9,25 @@ namespace {
 
 constexpr double kCell = OccupancyGrid::kCell;
 
-// A ship has a handful of hatches, and a scan of one fits all of them and what lies a frame's spacing beside.
+// Shifts that a search keeps as starts. A scan of one hatch fits each of the ship's handful of hatches, and
+// also beside them, shifted by the spacing of her ribs.
 constexpr std::size_t kMostStarts = 12;
-// Shifts nearer to a better one than this, in cells along every axis, are the same start.
+// A shift less than this many cells from a better one, along every axis, is the same start.
 constexpr int kApart = 3;
 
-// Few surfaces hold an approach along the ship, or across her where little but decks is in view: it may stop
-// farther off than an alignment reaches.
+// Shifts that are tried after an approach. Few surfaces hold it along the ship, or across her where little
+// but decks is in view: it may stop farther off than a fine alignment reaches.
 constexpr std::array<double, 4> kSlides{-0.4, -0.2, 0.2, 0.4};  // m
 
-// Stretches that challenges look at, one after the other: hatches are 15 to 35 m apart.
+// Stretches of the berth that challenge() tries in turn, one a call. Hatches are 15 to 35 m apart, so 40 m to
+// either side hold the next one.
 constexpr double kStretch = 4.0;  // m
-constexpr int kStretches = 20;    // ten to either side
-constexpr double kAcross = 2.0;   // m, how far to the sides
+constexpr int kStretches = 20;    // ten on either side
+constexpr double kAcross = 2.0;   // m, to either side across the ship
 
-// A moored ship heels by 3 deg before alarms go, trims by 1 deg, and lies along the quay to within 3 deg; the
-// map's own attitude may be as far to the other side. rad
+// Places that are turned by more than this against the map are dropped: roll, pitch, yaw, rad. A moored ship
+// heels by 3 deg before alarms go, trims by 1 deg, and lies along the quay to within 3 deg; the map's own
+// attitude may be as far to the other side.
 const Eigen::Vector3d kMostTurned{radians(6.0), radians(2.0), radians(6.0)};
 
 bool could_lie(const Pose& T_H_W) {
@@ -33,18 +36,18 @@ bool could_lie(const Pose& T_H_W) {
 }
 
 struct Shift {
-  int x, y, z;  // cells that the hull is moved by
+  int x, y, z;  // by how many cells the hull is moved
   int worth;
 };
 
-/// Whole cells within [low, high] metres, at least the one nearest to the middle.
+/// First and last whole cell within [low, high], m. An interval without one gets the cell nearest its middle.
 std::pair<int, int> cells_within(float low, float high) {
   const auto middle = static_cast<int>(std::lround((low + high) / 2.0F / OccupancyGrid::kCell));
   return {std::min(middle, static_cast<int>(std::ceil(low / OccupancyGrid::kCell))),
           std::max(middle, static_cast<int>(std::floor(high / OccupancyGrid::kCell)))};
 }
 
-/// What every shift within `reach` is worth.
+/// All shifts within `reach`; a shift is worth the sum of the grid's values under the moved cells.
 std::vector<Shift> correlate(const OccupancyGrid& grid, const std::vector<OccupancyGrid::Index>& cells,
                              const Box& reach) {
   const auto [x0, x1] = cells_within(reach.min.x(), reach.max.x());

@@ -1,11 +1,16 @@
-// Where in the berth could the hull lie? A search of all of it, as deep as the frame's time allows.
+// Where in the berth could the hull lie? A search of the whole berth, spread over frames.
 //
-// One scan cannot always tell a hull from the same hull slid along the quay, so a pose that did not follow
-// from the one before must stand against all others. begin() shifts the scan over the map in steps of half a
-// metre (OccupancyGrid) and keeps the best shifts as starts; each start is then aligned coarsely, a few a
-// frame, and where it ends up is a place. Every frame scores the places anew. Whether the scan contradicts a
-// place is not known here: the caller examines places and says so.
-// Turns are not searched: starts take the last known one, and half a metre is a degree over a hatch's length.
+// One scan cannot always tell a hull from the same hull slid along the quay. So a pose that does not follow
+// from the one before is compared with all other places. A place is a pose that the search has found, with
+// its score.
+//   begin()      shifts the scan over the map in steps of 0.5 m (OccupancyGrid); the best shifts are the
+//                starts.
+//   advance()    aligns a few starts a frame coarsely, each ends at a place; then scores all places anew.
+//   settle()     takes the caller's word whether the scan contradicts a place; that is not known here.
+//   challenge()  tries one stretch of the berth on its own, while the pose is certain.
+// Only shifts are searched: all starts have the last known attitude. A step of 0.5 m is as much as a turn of
+// a degree over a hatch's length.
+// `few_W`: a few hundred points of the scan, evenly taken.
 // Frames: scan in W, places as T_H_W, reach as displacement of the reference point in W; metres, radians.
 // Thread rule: one owner. Cost: begin() 2 ms, advance() 0.5 ms a start, challenge() 0.7 ms.
 #pragma once
@@ -26,13 +31,13 @@ class HullSearch {
  public:
   struct Place {
     Pose T_H_W;
-    double score = 0.0;         // share of the newest scan's points that it explains
+    double score = 0.0;         // score() with the newest scan
     bool contradicted = false;  // by the scan that it was last examined with
-    bool explains = false;      // examined, and not contradicted
+    bool explains = false;      // it was examined with all of a scan, and not contradicted
   };
 
-  /// Poses less than this apart are one place: several times the error of an approach, and far less than any
-  /// two places where a ship looks alike.
+  /// Poses less than this apart are one place: several times the error of an approach, and far less than lies
+  /// between two places where a ship looks alike.
   static constexpr double kSamePlace = 0.5;  // m, of the reference point
   static constexpr std::size_t kMostPlaces = 12;
 
@@ -40,15 +45,16 @@ class HullSearch {
   HullSearch(const Eigen::Vector3d& reference_H, const HullMap& map)
       : reference_H_(reference_H), map_(&map) {}
 
-  /// Forgets all places and finds the starts within `reach`, best first, the PLC's own pose before them.
-  /// `R_W_H`: the turn that they take.
+  /// Forgets all places and finds the starts: T_H_W = identity (the PLC's own pose), then the shifts within
+  /// `reach` that fit best, best first. `R_W_H`: the attitude of the shifted starts.
   void begin(std::span<const Point> few_W, const Box& reach, const Eigen::Matrix3d& R_W_H);
 
-  /// Aligns the next `starts` starts with a few hundred points of the scan, then scores every place.
+  /// Aligns the next `starts` starts coarsely, then scores every place.
   void advance(std::span<const Point> few_W, std::size_t starts, PointToPlaneIcp& icp);
 
-  /// Looks at another stretch of the berth in each call, from 40 m on one side of T_H_W to 40 m on the other.
-  /// The best place there, if it explains `margin` times as much as T_H_W does.
+  /// Each call tries the next of twenty stretches of 4 m, from 40 m on one side of T_H_W to 40 m on the
+  /// other. The best shift of the hull into the stretch, if more than 1 m away, is aligned coarsely. The
+  /// answer is the pose that this leads to, if its score is more than `margin` times that of T_H_W.
   [[nodiscard]] std::optional<Pose> challenge(std::span<const Point> few_W, const Pose& T_H_W, double margin,
                                               PointToPlaneIcp& icp);
 
@@ -59,24 +65,27 @@ class HullSearch {
   /// Best first.
   [[nodiscard]] std::span<const Place> places() const { return places_; }
 
-  /// Says that the place at `from` was aligned with all of the scan, which led to `to`, and whether the scan
-  /// contradicts that. `from` need not be a place.
+  /// Says that all of the scan was aligned from `from`, which led to `to`, and whether the scan contradicts
+  /// `to`. Places within kSamePlace of either are replaced by `to`. `from` need not be a place.
   void settle(const Pose& from, const Pose& to, bool contradicted);
 
-  /// Share of the scan that a pose explains.
+  /// Share of the points that a pose explains, 0 .. 1: a point counts 1 on a plane of the map, a half at 10
+  /// cm from it, 0 where there is no plane (PlaneScore).
   [[nodiscard]] double score(std::span<const Point> few_W, const Pose& T_H_W, PointToPlaneIcp& icp) const;
 
   /// How far apart two poses put the reference point, m.
   [[nodiscard]] double distance(const Pose& a, const Pose& b) const;
 
  private:
-  /// Shifts of the hull in H that make most of the scan fall onto the map, best first: at most `most`.
+  /// Shifts of the hull in H by which the scan falls onto the most valuable cells of the OccupancyGrid, best
+  /// first. Of shifts near each other only the best is taken. At most `most`.
   [[nodiscard]] std::vector<Eigen::Vector3d> best_shifts(std::span<const Point> few_W, const Box& reach,
                                                          const Eigen::Matrix3d& R_W_H,
                                                          std::size_t most) const;
   [[nodiscard]] Pose shifted(const Eigen::Vector3d& shift_H, const Eigen::Matrix3d& R_W_H) const;
   void add(const Place& place);
-  /// The best of T_H_W and places some decimetres beside it, along the ship and across her.
+  /// Tries T_H_W moved by a few decimetres either way, along X of H and then along Y: the pose with the best
+  /// score.
   [[nodiscard]] Pose slide(std::span<const Point> few_W, const Pose& T_H_W, PointToPlaneIcp& icp) const;
   void score_places(std::span<const Point> few_W, PointToPlaneIcp& icp);
 

@@ -1,5 +1,5 @@
-// How fast is the hull moving now? The slope of its latest poses at the last of them, so that noise does not
-// trip the limit and a hull that sets off is not seen late.
+// How fast is the hull moving now? A parabola is fitted to the poses of the last 1.5 s; its slope at the
+// newest pose is the speed. So noise does not trip the speed limit, and a hull that sets off is soon seen.
 //
 // Positions of the reference point in W, m, and roll, pitch, yaw, rad; a plain value of bounded size. Pure.
 #pragma once
@@ -12,17 +12,19 @@
 
 namespace hulltrack {
 
-/// A line through the poses tells the speed in the middle of their time: of a ship that sets off, what it was
-/// half a window ago. A parabola tells it at the end, whatever the acceleration as long as it is steady.
+/// A straight line would give the speed in the middle of the window: for a ship that sets off, the speed of
+/// half a window ago. A parabola gives the speed at the newest pose, exactly if the acceleration is steady.
 class MotionRecord {
  public:
-  /// 16 poses at 10 Hz, each with noise s, leave a speed with a sigma of s * 2.0 Hz: 6 mm/s for 3 mm, 25 mm/s
-  /// for 12.5 mm, a quarter of the 5 cm that health allows. So of a ship that speeds up by 0.05 m/s2 three
-  /// sigma and a frame period are 0.46 s. One that sets off within the window, however fiercely, is seen 0.19
-  /// of the window late at most, 0.28 s; one that stops speeding up looks ahead by as much. A swing looks
-  /// faster than it is, by 11 % at 8 s, by 1 % at 30 s.
+  /// The record holds the poses of this last stretch of time, 16 at 10 Hz.
+  /// Noise: if each pose has noise s, the speed has a sigma of s * 2.0 Hz: 6 mm/s for 3 mm, and 25 mm/s for
+  /// 12.5 mm, a quarter of the 5 cm that health allows.
+  /// Delay: at 0.05 m/s2 a ship's speed is three sigma (18 mm/s) after 0.36 s, and a frame later it is seen.
+  /// Lag: if the acceleration begins within the window, however fierce, the answer is at most 0.19 of the
+  /// window (0.28 s) late; if it ends there, the answer is as much ahead.
+  /// Swing: a ship that swings seems too fast, by 11 % for a period of 8 s, by 1 % for 30 s.
   static constexpr Nanoseconds kWindow = std::chrono::milliseconds(1500);
-  /// Across a longer gap the speed would rest on what lies at its two ends.
+  /// After a longer gap the record begins anew: the speed would rest on what lies at the two ends of the gap.
   static constexpr Nanoseconds kLongestGap = kWindow / 2;
   static constexpr std::size_t kFewest = 4;
   static constexpr Nanoseconds kShortest = std::chrono::milliseconds(300);
@@ -44,7 +46,7 @@ class MotionRecord {
     }
   }
 
-  /// At the time of the last pose; nothing while fewer than kFewest poses span kShortest.
+  /// The motion at the time of the last pose; nothing while fewer than kFewest poses or less than kShortest.
   [[nodiscard]] std::optional<Motion> motion() const {
     if (poses_.size() < kFewest || poses_.back().time - poses_.front().time < kShortest) {
       return std::nullopt;
@@ -63,7 +65,7 @@ class MotionRecord {
       ttt += t * t * t;
       tp += t * e.pose;
     }
-    // Least squares by parts that do not depend on each other: a line, and what a parabola q adds to it.
+    // Least squares of a parabola in two parts that are orthogonal over these times: a line, and a part q.
     double qq = 0.0;
     Vector6 qp = Vector6::Zero();
     for (const Entry& e : poses_) {
@@ -78,10 +80,11 @@ class MotionRecord {
   }
 
  private:
-  /// Noise bends a short record more than a ship's engines or tugs do. (2 s / a)^2 weighs the two by Bayes'
-  /// rule, for noise s of 3 mm and accelerations a of 0.05 m/s2: four poses make a line, a full window a
-  /// parabola to 2 %. So from the first answer on the noise stays below 4.5 Hz times that of a pose, and the
-  /// lag below 0.2 s.
+  /// Added to the denominator of the curvature, so that few poses give a line and many a parabola: noise
+  /// bends a short record more than a ship's engines or tugs do. (2 s / a)^2 weighs the two by Bayes' rule,
+  /// for noise s of 3 mm and accelerations a of 0.05 m/s2. Four poses make a line, a full window a parabola
+  /// to 2 %. From the first answer on, the speed's noise stays below 4.5 Hz times a pose's, and its lag below
+  /// 0.2 s.
   static constexpr double kBentByNoise = 0.0144;  // s^4
 
   using Vector6 = Eigen::Matrix<double, 6, 1>;

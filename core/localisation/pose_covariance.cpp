@@ -7,9 +7,9 @@
 namespace hulltrack {
 namespace {
 
-// The error of a sample's moment is uniform over the PLC's cycle, which is at most the time between samples:
-// its sigma is a sqrt(12)-th of that. A hull is in view for as long as two samples, whose errors are
-// independent: a sqrt(2)-th.
+// Sigma of a moment in units of the time between samples: 1 / sqrt(12) / sqrt(2), rounded. The error of a
+// sample's moment is uniform over the PLC's cycle, at most the time between samples: 1 / sqrt(12). A hull is
+// in view for as long as two samples, whose errors are independent: 1 / sqrt(2).
 constexpr double kMomentShare = 0.2;
 
 /// Twist [rotation; translation of reference_W] that turns one boom pose into another.

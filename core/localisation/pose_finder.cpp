@@ -7,47 +7,51 @@
 namespace hulltrack {
 namespace {
 
-// Points of a scan that approaches and scores use: at 500 the share that a pose explains has a sigma of 2 %.
+// Approaches and scores use this many points of the thinned scan. With 500 points the share that a pose
+// explains has a sigma of 2 %.
 constexpr std::size_t kFew = 500;
-// A scan that leaves fewer points than this is a sparse sensor's, or one in rain: it needs more of them and
-// has the time, since its other steps are quick. A dense sensor leaves some 7,000.
+// A scan is sparse if thinning leaves fewer points than this (a dense sensor leaves some 7,000): the fit then
+// uses up to kMostOfSparse unthinned points. It needs them, and the other steps are quick then.
 constexpr std::size_t kSparse = 5000;
 constexpr std::size_t kMostOfSparse = 8000;
-// A scan with fewer points than this on and around the hull is none to search with.
+// A scan with fewer points than this on and around the hull is not used to search.
 constexpr std::size_t kFewestForSearch = 100;
-// All starts are aligned in the time that health needs to return anyway.
+// All 13 starts of a search take four frames, less than health needs to return.
 constexpr std::size_t kStartsAFrame = 4;
-// A place that explains this share of what the pose explains is examined as closely as the pose itself. Slid
-// along the quay a ship keeps nine tenths of its points on decks and sides, so nearly all that matters.
+// A place is examined as closely as the pose if its score is at least this share of the pose's. A ship slid
+// along the quay keeps 90 % of her points on decks and sides, so nearly every such place is examined.
 constexpr double kRivals = 0.85;
-// A challenger explains this much more: five sigma of the difference of two shares of the same points.
+// A challenger's score is more than this many times the pose's. 5 % are five sigma of the difference of two
+// shares of the same points.
 constexpr double kClearlyBetter = 1.05;
-// Poses nearer than this are what one alignment or another makes of the same place.
+// Poses less than this apart may come of two alignments at one place: they are no rivals.
 constexpr double kOtherPlace = 1.0;  // m
-// Searched through without a trustworthy pose: the hull has moved on meanwhile, begin again.
+// The search begins anew if, this many frames after all starts were tried, no pose is unique: the hull may
+// have moved on.
 constexpr int kFramesUntilSearchedAgain = 10;
-// As far as an unseen hull is looked for, m.
+// The search reaches at most this far along X to either side of where the hull was last unique, m.
 constexpr double kFarthestUnseen = 60.0;
 
-// Voxels stand on their corners. Were their faces level, a deck just below one would give each voxel above it
-// a representative too, from the few returns that noise put there: 5 mm and 0.05 deg of error that come and
-// go with the tide. Decks and sides now cut every voxel askew, and what noise moves up it also moves down.
+// Turns the scan before it is thinned, so that voxels stand on their corners. With level faces, noise would
+// put a few returns of a deck just below a face into voxels above it, and each of these would keep one: an
+// error of 5 mm and 0.05 deg that comes and goes with the tide. Askew, every voxel is cut at a slant, and
+// noise moves as many points up as down.
 const Eigen::Matrix3f kAskew =
     Eigen::Quaternionf::FromTwoVectors(Point::UnitZ(), Point(1.0F, 1.0F, 1.0F)).toRotationMatrix();
 
-// How much more patches of residuals scatter than single ones would: before any frame has told, and how much
-// of a frame's own figure (a dozen per cent off) is believed.
+// PlaneCovariance::shared: how much more patches of residuals scatter than single ones would. Its mean before
+// the first frame, and the weight of a frame's own figure (a dozen per cent off) in the mean.
 constexpr double kSharedAtFirst = 2.0;
 constexpr double kSharedGain = 0.1;
 
-// What all residuals of a scan share cannot be seen in them: a beam that falls at a slant, or on an edge, is
-// returned by its nearer part. A fortieth of a return's noise of 2 cm, and as much from one end of the view
-// to the other, 20 m away.
+// Added to every axis' sigma, in quadrature, for errors that all residuals of a scan share and so cannot
+// show: a beam that falls at a slant, or on an edge, is returned by its nearer part. A fortieth of a return's
+// noise of 2 cm, and a turn by that between the ends of the view, 20 m apart.
 constexpr double kCommonShift = 0.0005;              // m
 constexpr double kCommonTurn = kCommonShift / 20.0;  // rad
 
-/// All of `cloud`, or one point of each of `most` stretches of it. Not the same of every stretch: in the
-/// order of firing that could be one laser alone.
+/// All of `cloud`, or `most` points of it: one of each of `most` equal parts. The point's place in its part
+/// differs from part to part: in the order of firing, a fixed place could always be the same laser's.
 void take_evenly(const Cloud& cloud, std::size_t most, Cloud& out) {
   if (cloud.size() <= most) {
     out = cloud;
@@ -109,7 +113,7 @@ PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const
     search_.advance(few_W_, kStartsAFrame, plane_icp_);
     frames_searched_ += search_.complete() ? 1 : 0;
   }
-  // The published method: each frame from the PLC alone (Guo 2025, 2.2).
+  // The published method: each frame starts from the PLC's pose alone (Guo 2025, 2.2).
   if (registration_.method == RegistrationMethod::point_to_point) {
     PlaneIcpResult published;
     published.icp = point_icp_.align(thinned_W_, map_->tree(), Pose::Identity());
@@ -185,7 +189,7 @@ std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
     return std::nullopt;
   }
   if (unique_ && challenger_) {
-    challenger_ = T_H_W;  // it won
+    challenger_ = T_H_W;  // it was this frame's best start: go on from the pose found there
     return std::nullopt;
   }
   if (unique_) {
@@ -212,7 +216,7 @@ void PoseFinder::settle(const Pose& start, const Pose& T_H_W, bool contradicted)
   if (!unique_) {
     search_.settle(start, T_H_W, contradicted);
   } else if (contradicted) {
-    challenger_.reset();  // it matches more points, but the scan sees through what would be there
+    challenger_.reset();  // it explains more points, but its examination spoke against it
   }
 }
 

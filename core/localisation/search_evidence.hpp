@@ -7,11 +7,11 @@
 
 namespace hulltrack {
 
-/// What the search of the berth says; of interest while a pose does not follow from an earlier one.
+/// Of interest while a pose does not follow from an earlier one.
 struct SearchEvidence {
-  std::size_t tried = 0;  // starts since the search began
+  std::size_t tried = 0;  // starts that have been aligned, of `starts`
   std::size_t starts = 0;
-  std::optional<Eigen::Vector3d> rival;  // where the hull might lie as well: displacement, m
+  std::optional<Eigen::Vector3d> rival;  // displacement at another place that explains the scan, m
 };
 
 }  // namespace hulltrack

@@ -1,7 +1,7 @@
 // What one frame leaves to the next: where the hull was seen, how she moves, and whether she may lie
 // elsewhere.
 //
-// W; metres, radians. A plain value of bounded size.
+// Frame W; metres, radians. A plain value of bounded size.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +12,12 @@
 
 namespace hulltrack {
 
-/// A hull that may have moved by more than this unseen is searched for: alignments from starts this far off
-/// still end at the right place, those from several metres on at places of their own.
+/// If the hull may have moved by more than this while she was not seen, the berth is searched for her. An
+/// alignment from a start this far off still ends at the right place; from several metres off it ends
+/// elsewhere.
 inline constexpr double kUnseen = 1.0;  // m
 
-/// Nothing moves a moored hull faster: twice the fastest jerk of a passing ship, a metre within some seconds.
+/// No moored hull moves faster: twice the fastest pull of a passing ship, a metre within some seconds.
 inline constexpr double kFastestHull = 0.6;  // m/s
 
 struct FollowedPose {

@@ -14,25 +14,26 @@
 namespace hulltrack {
 namespace {
 
-constexpr float kBelowRim = 0.5F;  // m: sheer along a hatch; the deck is farther below
-// A coaming's top is 0.3 m broad or more: of points 0.1 m apart one row at least has a disc of this radius.
+constexpr float kBelowRim = 0.5F;  // m below the relief's rim: room for sheer; the deck is farther below
+// A coaming's top is 0.3 m broad or more: of points 0.1 m apart, one row has only top within this radius.
 constexpr float kRimVoxel = 0.1F;    // m
 constexpr float kRimRadius = 0.12F;  // m
 constexpr std::size_t kFewestRimNeighbours = 8;
-constexpr double kRimFlat = 0.02;        // m RMS
-constexpr double kRimNarrow = 0.04;      // m RMS across; a full disc has 0.06
-constexpr double kRimOffCentre = 0.035;  // m; a half disc's centroid is 0.05 m aside
+constexpr double kRimFlat = 0.02;        // m: largest RMS distance from the plane
+constexpr double kRimNarrow = 0.04;      // m: smallest RMS extent in the plane; a full disc has 0.06
+constexpr double kRimOffCentre = 0.035;  // m: largest distance of the centroid; beside an edge it is 0.05
 constexpr double kRimLevel = 0.95;       // cosine of 18 deg: heel, sheer, noise of so small a disc
 constexpr float kRimSpacing = 0.2F;      // m between rim points
 
-constexpr float kCorner = 2.0F;    // tangent of the angle from which on a direction to the hold is a side's
-constexpr float kOffLine = 0.06F;  // m: the middle row of a strip is known to half of kRimVoxel
-constexpr float kRimAside = 0.4F;  // m: as far as the edges of a rim are looked for
-constexpr float kAtEdge = 0.08F;   // m: an edge is known to half of the map's 5 cm, a wall to a tenth of it
-constexpr float kSquare = 0.99F;   // cosine of 8 deg
-constexpr float kRimThickness = 0.04F;  // m: of the layer of points that are its top
+// A point is of a side, not of a corner, if the way to the hold is this much longer along one axis.
+constexpr float kCorner = 2.0F;
+constexpr float kOffLine = 0.06F;       // m off the middle line: its points are known to half of kRimVoxel
+constexpr float kRimAside = 0.4F;       // m from the middle line: the edges are looked for up to here
+constexpr float kAtEdge = 0.08F;        // m, wall to edge: an edge is known to half of the map's 5 cm
+constexpr float kSquare = 0.99F;        // cosine of 8 deg: a wall's normal against across_H
+constexpr float kRimThickness = 0.04F;  // m: points of the top are this near to the rim point's height
 
-/// The rim's surface at p, or not: level, flat, and all around p.
+/// Whether the neighbours of p are level, flat and all around p. If so, rim.p_H becomes their mean.
 bool is_on_rim(const Point& p, const Cloud& neighbours, RimPoint& rim) {
   if (neighbours.size() < kFewestRimNeighbours) {
     return false;
@@ -50,7 +51,7 @@ struct Line {
   Point centre, across;
 };
 
-/// The line through level points and the level direction square to it, towards `side`.
+/// Mean of the points, and the level direction in which they spread least, turned towards `side`.
 Line fit_line(const std::vector<RimPoint*>& strip, const Point& side) {
   Line line{Point::Zero(), Point::Zero()};
   for (const RimPoint* rim : strip) {
@@ -67,8 +68,8 @@ Line fit_line(const std::vector<RimPoint*>& strip, const Point& side) {
   return line;
 }
 
-/// Moves the points of a strip onto the line through them and turns across_H square to it. What is off the
-/// line, on a locker beside the coaming say, leaves the strip.
+/// Fits a line, drops points off it (say on a locker beside the coaming) in three ever narrower rounds, moves
+/// the rest onto it and turns across_H square to it. With too few points left the strip is given up.
 void straighten(std::vector<RimPoint*>& strip) {
   const Point side = strip.front()->across_H;
   for (const float farthest : {0.3F, 0.1F, kOffLine}) {
@@ -95,8 +96,8 @@ void straighten(std::vector<RimPoint*>& strip) {
 
 Point seen_from_above(const Point& p) { return {p.x(), p.y(), 0.0F}; }
 
-/// Level unit vector from the coaming's inside through a wall of it under an edge of the rim; zero where the
-/// surfel is no such wall.
+/// If the surfel is a wall under an edge of the rim (below it, facing across it, within kAtEdge of the edge):
+/// the level unit vector from the strip's middle through this wall. Zero otherwise.
 Point outward_under(const RimPoint& rim, const Surfel& wall) {
   const Point d = wall.centre_H - rim.p_H;
   const float s = rim.across_H.dot(d);
@@ -109,7 +110,7 @@ Point outward_under(const RimPoint& rim, const Surfel& wall) {
   return std::abs(s - rim.begin) < kAtEdge ? Point(-rim.across_H) : Point::Zero();
 }
 
-/// Where the map's surface of that height ends to either side, seen over the whole strip.
+/// Finds the strip's edges: counts map points of the strip's height over the distance from its middle line.
 void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
   constexpr float kBin = 0.0125F;  // m
   constexpr int kBins = static_cast<int>(2.0F * kRimAside / kBin);
@@ -128,13 +129,13 @@ void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
       }
     }
   }
-  // Smoothed over three bins, then outward from the middle to where less than half of the middle's is left.
+  // An edge is where the count, smoothed over three bins, falls to half of the mean count in the middle.
   const auto smooth = [&](int i) {
     const auto at = [&](int k) { return profile[static_cast<std::size_t>(std::clamp(k, 0, kBins - 1))]; };
     return (at(i - 1) + at(i) + at(i + 1)) / 3.0F;
   };
-  constexpr int kEdge = 4;              // bins: 5 cm, the map's voxel
-  constexpr float kMostBeyond = 0.15F;  // of the plateau
+  constexpr int kEdge = 4;              // bins: 5 cm, the map's voxel. So far beyond an edge ...
+  constexpr float kMostBeyond = 0.15F;  // ... at most this share of the middle's count may be left
   float plateau = 0.0F;
   constexpr int kMiddle = kBins / 2;
   constexpr int kHalfWidth = 8;  // bins: 0.1 m to either side is strip
@@ -148,7 +149,7 @@ void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
   const bool sharp =
       smooth(low - kEdge) < kMostBeyond * plateau && smooth(high + kEdge) < kMostBeyond * plateau;
   if (low == 0 || high == kBins - 1 || !sharp) {
-    return;  // broader than a rim, or something joins it
+    return;  // broader than a rim, or another surface joins it: the edges stay unknown
   }
   for (RimPoint* rim : strip) {
     rim->begin = (static_cast<float>(low) + 1.0F) * kBin - kRimAside;
@@ -220,8 +221,8 @@ std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32
   }
   const KdTree tree(places);
   struct Wall {
-    Point outward = Point::Zero();  // sum over the surfels that carry a rim
-    float surfels = 0.0F;
+    Point outward = Point::Zero();  // sum of outward_under() over the patch's surfels
+    float surfels = 0.0F;           // how many the patch has
   };
   std::vector<Wall> walls(patches);
   for (const Surfel& surfel : surfels) {

@@ -1,9 +1,11 @@
-// The coamings of a ship's hatches: their tops, which are strips, and the walls that carry these.
+// The coamings of a ship's hatches: their tops and the walls that carry the tops.
 //
-// A coaming is welded to the deck: a top that lies aside of its place, or a wall that stands behind its own,
-// is another ship's. Found along the pits of the relief. A coaming's top is too narrow for the surfels of
-// the metric subset and has finer points of its own.
-// Frame H, metres. Pure functions; cost: some 5 us a map point near a rim.
+// A coaming is welded to the deck. If its top or its wall is seen in another place, this is another ship.
+//   rim:   the top of the coaming around a pit (an open hatch, relief.hpp), as a row of points. It is too
+//          narrow for the surfels of the metric subset and has these finer points of its own.
+//   strip: the top of one straight piece of coaming, between its two edges: the rim points of one patch.
+// Steps: find_rims(), patch numbers for the rim points (patches.hpp), measure_rims(), find_coaming_walls().
+// Frame H, metres. Pure functions. Cost: some 5 us a map point near a rim.
 #pragma once
 
 #include <cstdint>
@@ -16,28 +18,31 @@
 
 namespace hulltrack {
 
-/// A point in the middle of a coaming's top.
+/// A point on a coaming's top; on the middle line of its strip once this is measured.
 struct RimPoint {
   Point p_H;
-  Point over_hold_H;   // at the same height, where the open hold is
+  Point over_hold_H;   // at about the same height, over the nearest cell inside the pit
   Point across_H;      // level unit vector across the strip towards the hold
-  float begin = 0.0F;  // edges of the strip from p_H along across_H, m; both 0: not known
+  float begin = 0.0F;  // edges of the strip, from p_H along across_H, m; both 0: not known
   float end = 0.0F;
   std::uint32_t patch = Surfel::kNoPatch;
   [[nodiscard]] bool is_measured() const { return patch != Surfel::kNoPatch && begin < end; }
 };
 
-inline constexpr float kRimReach = 1.0F;            // m: a coaming with its rest bar is not broader
-inline constexpr std::size_t kFewestRimPoints = 5;  // a metre of rim
+/// A rim lies within this distance of a cell inside its pit, m: a coaming with its rest bar is not broader.
+inline constexpr float kRimReach = 1.0F;
+inline constexpr std::size_t kFewestRimPoints = 5;  // of a strip: a metre of rim
 
-/// The rims of all pits of the map.
+/// Points on the rims of all pits, without patch and edges. `map` is the tree over `cloud_H`.
 [[nodiscard]] std::vector<RimPoint> find_rims(const Cloud& cloud_H, const KdTree& map, const Relief& relief);
 
-/// Brings numbered rim points onto the middle line of their strips and finds the edges.
+/// For the rim points of each patch: moves them onto the line through them, takes the patch from those that
+/// lie off the line, and finds the strip's edges from the map's points around.
 void measure_rims(const KdTree& map, std::vector<RimPoint>& rims);
 
-/// Which of `patches` patches are walls under an edge of a measured rim. Turns their surfels' normals away
-/// from the coaming's inside: from there nobody sees them (Surfel::backed).
+/// Which of `patches` patches are walls of a coaming? A patch is one if most of its surfels lie below an edge
+/// of a measured rim, in line with the edge, and face across the strip. Their normals are turned away from
+/// the strip's middle and they become Surfel::backed: a wall is not seen from within the coaming.
 [[nodiscard]] std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t patches,
                                                    std::vector<Surfel>& surfels);
 

@@ -36,7 +36,7 @@ HullMap::HullMap(Cloud cloud_H)
 }
 
 double HullMap::length() const {
-  constexpr float kShortest = 1.0F;  // a map of one point is a map
+  constexpr float kShortest = 1.0F;  // m: a map of one point has a length, too
   const Box box = bounding_box(subset_H_);
   return static_cast<double>(std::max(kShortest, box.max.x() - box.min.x()));
 }

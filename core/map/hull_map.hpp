@@ -1,6 +1,7 @@
-// The reference map of one ship: immutable cloud, search tree, and what metrics and checks need of it.
+// The reference map of one ship: the cloud, its search tree, and all that is derived from it for metrics,
+// checks, registration and search.
 //
-// Frame H, metres. Built once at start-up; shared between threads afterwards.
+// Frame H, metres. Built once at start-up; immutable, so that threads share it.
 // Precondition of the constructor: a non-empty cloud of finite points (core/io checks files).
 // Cost: about 1 us a map point; memory about 40 bytes a map point.
 #pragma once
@@ -20,34 +21,35 @@ namespace hulltrack {
 
 class HullMap {
  public:
-  /// One point a voxel of this size is the fixed subset of the metrics (ICD 3).
+  /// The metric subset has one map point in each voxel of this size (ICD 3).
   static constexpr float kSubsetVoxel = 0.4F;  // m
-  /// One point a voxel of this size hides what lies behind it.
+  /// The occluders, which hide what lies behind them, are one map point in each voxel of this size.
   static constexpr float kOccluderVoxel = 0.15F;  // m
 
   explicit HullMap(Cloud cloud_H);
 
   [[nodiscard]] const Cloud& cloud_H() const { return cloud_H_; }
-  /// Of the hull as far as it is mapped, along X, m; > 0.
+  /// Length of the mapped part of the hull along X, m; > 0.
   [[nodiscard]] double length() const;
   [[nodiscard]] const KdTree& tree() const { return tree_; }
 
-  /// The metric subset, and for each of its points the surface around it.
+  /// The metric subset, and for each of its points the surface around it; same indices.
   [[nodiscard]] const Cloud& subset_H() const { return subset_H_; }
   [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
 
-  /// The tops of the hatches' coamings, and the patches that these and the surfels form.
+  /// Points on the tops of the hatches' coamings, and the patches that rim points and surfels form.
   [[nodiscard]] const std::vector<RimPoint>& rims() const { return rims_; }
   [[nodiscard]] const std::vector<MapPatch>& patches() const { return patches_; }
 
-  /// What is looked for in a scan: the metric subset, then the rim points.
+  /// The points that are looked for in a scan: first the metric subset, then the rim points.
   [[nodiscard]] const Cloud& probes_H() const { return probes_H_; }
 
+  /// The points that hide others when the map is seen from a sensor.
   [[nodiscard]] const PointBlocks& occluders_H() const { return occluders_H_; }
 
   /// The flat parts, for registration.
   [[nodiscard]] const PlaneMap& planes() const { return planes_; }
-  /// For searching the whole berth.
+  /// The cells that the hull fills, for searching the whole berth.
   [[nodiscard]] const OccupancyGrid& occupancy() const { return occupancy_; }
 
  private:

@@ -9,12 +9,14 @@
 namespace hulltrack {
 namespace {
 
-// Heights are summed by whole registers, and in bytes as long as these hold what so many cells are worth.
+// correlate() adds 64 heights at once as bytes, whole registers; only the first kHeights of them are wanted.
+// A cell is worth 2 at most, so that a byte holds the sum of 127 cells. Then 16 bits take over.
 constexpr int kLanes = 64;
-constexpr std::size_t kCellsInBytes = 127;  // of 2 at most
+constexpr std::size_t kCellsInBytes = 127;
 static_assert(kLanes >= OccupancyGrid::kHeights);
 
-// A block: columns of one layer, and above each what a look that begins in the layer sees of the next.
+// A layer is 256 heights. A block holds 4 x 4 columns of one layer, each followed by a copy of the lowest
+// heights of the next layer, so that a read that begins in the layer needs no second block.
 constexpr int kSideBits = 2;
 constexpr int kSide = 1 << kSideBits;
 constexpr int kLayerBits = 8;
@@ -22,10 +24,10 @@ constexpr int kLayer = 1 << kLayerBits;
 constexpr int kColumn = kLayer + kLanes;
 constexpr std::size_t kBlock = std::size_t{kSide} * kSide * kColumn;
 
-// Heights are counted from so far below the lowest cell that all looks at a hull begin in one layer.
+// Heights count from this many cells below the lowest cell, so that all reads for a hull begin in one layer.
 constexpr int kBelow = 2 * OccupancyGrid::kUp;
 
-/// Of a column's height 0 in its block.
+/// Index of the column's height 0 within its block.
 std::size_t column_of(int x, int y) {
   return static_cast<std::size_t>((x & (kSide - 1)) * kSide + (y & (kSide - 1))) * kColumn;
 }
@@ -35,7 +37,7 @@ std::size_t column_of(int x, int y) {
 OccupancyGrid::OccupancyGrid(std::span<const Point> occupied_H) {
   const Box box = bounding_box(occupied_H);
   origin_H_ = box.min - Point::Constant(kCell);
-  // Which cell a point lies in is for cell_of() alone to say: it rounds.
+  // The bounds come from cell_of(), too, so that its rounding cannot put a point outside of them.
   low_ = cell_of(box.min);
   high_ = cell_of(box.max);
   low_ = {low_.x - 1, low_.y - 1, low_.z - 1};
@@ -52,7 +54,7 @@ OccupancyGrid::OccupancyGrid(std::span<const Point> occupied_H) {
 
 OccupancyGrid::Index OccupancyGrid::cell_of(const Point& p_H) const {
   const Point scaled = (p_H - origin_H_) / kCell;
-  // Far outside is outside: whole numbers stay small enough to be shifted.
+  // Clamped far outside of any map, so that shifting the whole numbers cannot overflow.
   const auto cell = [](float v) { return static_cast<int>(std::floor(std::clamp(v, -1e6F, 1e6F))); };
   return {cell(scaled.x()), cell(scaled.y()), cell(scaled.z())};
 }
@@ -98,7 +100,7 @@ void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
     }
     const std::uint8_t* column =
         &worth_[block * kBlock + column_of(cx, cy) + static_cast<std::size_t>(lowest & (kLayer - 1))];
-    // The lanes beyond kHeights may lack the next layer's: nobody asks for them.
+    // The lanes from kHeights on may lack heights of the next layer. They are no part of the answer.
     for (std::size_t k = 0; k < kLanes; ++k) {
       bytes[k] = static_cast<std::uint8_t>(bytes[k] + column[k]);
     }

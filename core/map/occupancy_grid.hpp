@@ -1,10 +1,12 @@
-// Which cells of space does the mapped hull occupy, and how many points of a cloud would lie in them if the
-// cloud were shifted by whole cells?
+// Which cells of space does the mapped hull occupy, and how well would a cloud, shifted by whole cells, match
+// them?
 //
-// Cells of kCell in H: worth 2 with a point of the map in it, 1 beside such a cell (a shift is off by up to
-// half a cell, a hull by its turn). Height is the fastest index, so that one look at a column of cells
-// answers for all vertical shifts at once. Kept in blocks of kSide x kSide columns, only where the map is.
-// Frame H, metres, within 100 km of the origin. Immutable. No failure: points outside count nothing.
+// Cells are cubes of kCell in H. A cell with a point of the map is worth 2, a cell that shares a face with
+// one of these 1: a shift by whole cells is off by up to half a cell, and the hull may be turned a little.
+// The match of a shift is a sum over the cloud's points: what the cells are worth in which they then lie.
+// Height is the fastest index, so that one read of a column of cells answers for all vertical shifts. Stored
+// in blocks of columns, only where the map is.
+// Frame H, metres, within 100 km of the origin. Immutable. Cannot fail: points outside are worth 0.
 // Cost: 2 to 6 MB a ship, and for scattered points 20 kB each; correlate() some 6 ns a point.
 #pragma once
 
@@ -20,7 +22,7 @@ namespace hulltrack {
 class OccupancyGrid {
  public:
   static constexpr float kCell = 0.5F;  // m
-  /// Vertical shifts by -kUp .. kUp cells are answered together: 15 m up and down.
+  /// Vertical shifts by -kUp to kUp cells are answered together: 15 m up and down.
   static constexpr int kUp = 30;
   static constexpr int kHeights = 2 * kUp + 1;
 
@@ -31,7 +33,8 @@ class OccupancyGrid {
   };
   [[nodiscard]] Index cell_of(const Point& p_H) const;
 
-  /// worth[kUp + k] is increased by what `cells` are worth if each is shifted by (x, y, k) cells.
+  /// For each k from -kUp to kUp: shifts every one of `cells` by (x, y, k) cells and adds what the cells
+  /// reached are worth to worth[kUp + k].
   void correlate(std::span<const Index> cells, int x, int y, std::span<std::uint16_t, kHeights> worth) const;
 
   /// Heap memory that the grid holds, bytes.
@@ -42,7 +45,7 @@ class OccupancyGrid {
   void mark_in_layer(const Index& cell, int layer, int height, std::uint8_t worth);
 
   Point origin_H_;
-  Index low_{}, high_{};  // of the cells that are worth something
+  Index low_{}, high_{};  // bounds of the cells that are worth something
   BlockIndex blocks_;
   std::vector<std::uint8_t> worth_;  // block by block: x, y, height in the layer
 };

@@ -7,16 +7,18 @@
 namespace hulltrack {
 namespace {
 
-constexpr float kConnected = 0.65F;      // m: neighbours in a 0.4 m subset
-constexpr float kSameDirection = 0.99F;  // cosine of 8 deg
-constexpr float kSamePlane = 0.05F;      // m: four sigma of two points and a normal off by a degree
-// Behind a surface: 0.15 to 0.45 m, where it is the far side of a wall or a box that a range image of 0.4 m
-// tolerance cannot tell from the near one.
+constexpr float kConnected = 0.65F;      // m between neighbours: the subset has a point in each 0.4 m voxel
+constexpr float kSameDirection = 0.99F;  // cosine of 8 deg between the normals of neighbours
+// Neighbours are this near to each other's plane, m: four sigma of two points and a normal off by a degree.
+constexpr float kSamePlane = 0.05F;
+// A surface has another one behind it if the map has a point within kBehindRadius of the place kBehindSurface
+// behind it: the far side of a wall or a box. The range image (visibility.hpp), whose tolerance is 0.4 m,
+// cannot tell it from the near side.
 constexpr float kBehindSurface = 0.3F;     // m
 constexpr float kBehindRadius = 0.15F;     // m
-constexpr std::size_t kFewestSurfels = 6;  // a square metre: less is a fitting
+constexpr std::size_t kFewestSurfels = 6;  // of a patch: a square metre; what is smaller is a fitting
 
-/// Sets of points that belong together.
+/// Disjoint sets of points that belong together (union-find).
 class Unions {
  public:
   explicit Unions(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -38,8 +40,8 @@ std::array<int, 3> tile_of(const Point& p) {
   return {tile(p.x()), tile(p.y()), tile(p.z())};
 }
 
-/// For each point the number of its patch, counted on from `next`; kNoPatch where it has too few. Neighbours
-/// of one tile are of one patch if belong(i, j).
+/// For each point the number of its patch, numbers from `next` on; kNoPatch if the patch has fewer than
+/// `fewest` points. Neighbours i, j within kConnected and in one tile belong to one patch if belong(i, j).
 template <typename Belong>
 std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std::uint32_t& next,
                                    Belong&& belong) {
@@ -73,11 +75,12 @@ std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std:
   return patches;
 }
 
-/// The side of a patch is the one that most of its surfels say, if half of them say any.
+/// Turns all normals of a patch to the side that most of its backed surfels face. The patch is backed if that
+/// majority is larger than half of all its surfels.
 void give_patches_one_side(std::vector<Surfel>& surfels, std::uint32_t patches) {
   struct Vote {
-    Point direction = Point::Zero();
-    float side = 0.0F;  // for the direction, less those against it
+    Point direction = Point::Zero();  // normal of the patch's first surfel
+    float side = 0.0F;  // backed surfels that face the direction, less those that face away from it
     float surfels = 0.0F;
   };
   std::vector<Vote> votes(patches);

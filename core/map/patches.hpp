@@ -1,8 +1,9 @@
-// Pieces of a ship that prove which ship it is: flat patches of a few metres and the rims of its hatches.
+// Pieces of a ship that prove which ship it is: flat patches, and pieces of the tops of its coamings.
 //
-// A patch is connected, coplanar and not larger than kTile, so that the bending of a hull by centimetres
-// moves it as a whole. Left out is what another day may look otherwise on the same ship: what lies in a pit
-// (cargo's place) and what stands higher than a hatch's rim beside it (covers' place), down to the deck.
+// A patch is a connected group of surfels on one plane, or of rim points (coaming.hpp), within a cube of
+// kTile. A hull that bends by centimetres moves so small a piece as a whole. Surfels are left out where the
+// same ship may look different on another day: in pits, where cargo lies, and where hatch covers may stand,
+// down to the deck (relief.hpp).
 // Frame H, metres. Pure functions.
 #pragma once
 
@@ -20,19 +21,20 @@ enum class PatchKind : std::uint8_t { surface, coaming_wall, rim };
 
 struct MapPatch {
   PatchKind kind = PatchKind::surface;
-  SurfaceClass faces = SurfaceClass::other;  // of a rim: its edges
-  float place = 0.0F;                        // m: its middle, along the axis that it faces
-  std::uint32_t pit = Relief::kNoPit;        // of the hatch that it belongs to
+  SurfaceClass faces = SurfaceClass::other;  // of a rim: the direction across the strip, not of its level top
+  float place = 0.0F;                        // m: mean coordinate along the axis that it faces
+  std::uint32_t pit = Relief::kNoPit;        // pit of the hatch that it belongs to: within kRimReach of it
 };
 
-inline constexpr float kTile = 4.0F;  // m
+inline constexpr float kTile = 4.0F;  // m: side of the cubes at whose borders patches end
 
-/// Finds out which planar surfels have another surface behind them (Surfel::backed); surfels as of
-/// compute_surfels().
+/// Makes planar surfels Surfel::backed if the map has something close to one side of them only, and turns
+/// their normals to the free side. `surfels`: as compute_surfels() gives them; `map`: the tree over the map.
 void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel>& surfels);
 
-/// Gives planar surfels and rim points the number of their patch, the surfels of a patch one side, and
-/// measures the rims; returns the patches by number.
+/// Marks movable surfels. Gives the other planar surfels and the rim points the number of their patch. Turns
+/// the normals of a patch to one side, measures the rims and finds the coamings' walls. Returns the patches
+/// by number. `points_H`: the point of each surfel.
 [[nodiscard]] std::vector<MapPatch> number_patches(const Cloud& points_H, const KdTree& map,
                                                    const Relief& relief, std::vector<Surfel>& surfels,
                                                    std::vector<RimPoint>& rims);

@@ -12,9 +12,9 @@
 namespace hulltrack {
 
 struct PlaneFit {
-  Eigen::Vector3d centroid;      // of the neighbours, from the point, m
+  Eigen::Vector3d centroid;      // of the neighbours, as seen from the point, m
   Eigen::Vector3d normal;        // unit, sign arbitrary
-  std::array<double, 3> spread;  // RMS: from the plane, across its narrow and its wide direction, m
+  std::array<double, 3> spread;  // RMS, m: distance from the plane; smaller, larger extent in the plane
 };
 
 [[nodiscard]] PlaneFit fit_plane(const Point& p, std::span<const Point> neighbours);

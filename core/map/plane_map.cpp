@@ -10,10 +10,11 @@
 namespace hulltrack {
 namespace {
 
-// Steeper than this the side of a hold stays bare above its cargo: the slope of the steepest heaps is 40 deg.
+// A surface in a hold that is steeper than this stays bare: the steepest heaps of cargo slope by 40 deg.
 const float kBareCosine = std::cos(0.87F);  // 50 deg
 
-/// Whether other things than this surface may be found where it is while the same ship lies there.
+/// Whether something else may be found in the surfel's place on the same ship on another day: cargo on a
+/// level surface in a pit, a hatch cover in the covers' place.
 bool may_change(const Surfel& surfel, const Relief& relief) {
   const bool lies = std::abs(surfel.normal_H.z()) > kBareCosine;
   return (lies && relief.in_pit(surfel.centre_H)) || relief.in_covers_place(surfel.centre_H);

@@ -1,9 +1,10 @@
 // The flat parts of a hull map as small planes, for point to plane registration.
 //
-// One plane a voxel of kSpacing wherever the map is flat around it (surfels.hpp); edges, rails and wires have
-// none, since a point near them says nothing about a plane. Nor have the floors of holds, which cargo covers,
-// and hatch covers, which move (relief.hpp). Each plane is the fit to about a hundred map
-// points, so that it is a tenth as noisy as one of them. Frame H, metres. Immutable.
+// One plane in each voxel of kSpacing where the map is flat (surfels.hpp). Edges, rails and wires get no
+// plane, since a point near them says nothing about one. Floors of holds and places where hatch covers may
+// stand (relief.hpp) get none either: cargo and covers change from day to day. A plane is fitted to about a
+// hundred map points, so that its noise is a tenth of a point's.
+// Frame H, metres. Immutable.
 // Cost: 2 us a plane to build, some 100,000 planes for a ship of 120 m; 45 bytes a plane.
 #pragma once
 
@@ -25,10 +26,11 @@ class PlaneMap {
     Point centre_H;
     Point normal_H;  // unit, sign arbitrary
     SurfaceClass surface;
-    std::uint32_t patch;  // number of the piece of surface that it belongs to, below patches()
+    std::uint32_t patch;  // number of its patch (see kPatch), below patches()
   };
-  /// A patch is what lies in one cube of this size and faces one way: as far as errors of the map and of what
-  /// lies on a surface are shared, and a few dozen of them are in view.
+  /// A patch is all planes of one class in a cube of this size, connected or not. Errors of the map and of
+  /// what lies on a surface are shared over about this length; a few dozen patches are in view. The
+  /// covariance of a fit needs them (see core/registration/plane_covariance.hpp).
   static constexpr float kPatch = 3.0F;  // m
 
   /// `map` is the tree over `cloud_H`.
@@ -36,7 +38,7 @@ class PlaneMap {
 
   [[nodiscard]] const std::vector<Plane>& planes() const { return planes_; }
   [[nodiscard]] std::uint32_t patches() const { return patches_; }
-  /// Over the centres; its indices are those of planes().
+  /// Search tree over the planes' centres; its indices are those of planes().
   [[nodiscard]] const KdTree& tree() const { return tree_; }
 
  private:

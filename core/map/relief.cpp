@@ -16,14 +16,13 @@ constexpr float kNowhere = std::numeric_limits<float>::infinity();
 constexpr float kNoRim = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array<std::pair<int, int>, 8> kDirections{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-// Above a rim by less than this is the rim itself: sheer along a hatch, rest bars, noise.
+// What stands higher than a rim by less than this still belongs to the rim: sheer, rest bars and noise.
 constexpr float kOnRim = 0.15F;  // m
 
-// What is around is asked of every third cell along both axes, the cell itself among them: 81 of them at
-// most.
+// smooth_rims() takes every third cell along both axes, to save time: 9 x 9 cells around each one at most.
 constexpr int kStride = 3;
 
-// Tiles that a horizon looks across, beyond its own.
+// kReach in tiles: the horizon of a cell depends on this many tiles in each direction, beyond the cell's own.
 constexpr int kFarTiles = 5;
 static_assert(Relief::kReach / Relief::kCell / Relief::kTile == float{kFarTiles});
 
@@ -72,15 +71,15 @@ Relief::Relief(std::span<const Point> cloud_H) {
   find_tall_columns();
 }
 
-/// Far outside is outside: whole numbers stay small enough to be counted on from.
+/// Clamped to a million cells, far outside of any map, so that sums with cell numbers cannot overflow.
 Relief::Cell Relief::cell_of(const Point& p) const {
   const auto cell = [](float v) { return static_cast<int>(std::floor(std::clamp(v, -1e6F, 1e6F))); };
   return {cell((p.x() - corner_.x()) / kCell), cell((p.y() - corner_.y()) / kCell)};
 }
 
-/// A tile is kept where a point lies in it or in a cell beside it (the middle of some points may lie beside
-/// their cells), and where tiles with points lie within kReach on all four sides: the floor of a hold that no
-/// survey saw. Of the latter there are five at most for each tile with points.
+/// Stores a tile if a point lies in it or in a cell beside it: callers also ask at the mean of a few points,
+/// which may lie in the next cell. Stores an empty tile if tiles with points lie within kReach on all four
+/// sides: the floor of a hold that no survey saw. There are at most five of these for each tile with points.
 void Relief::make_tiles(std::span<const Point> cloud_H) {
   BlockIndex with_points;
   std::vector<Cell> tiles;
@@ -130,7 +129,7 @@ void Relief::make_tiles(std::span<const Point> cloud_H) {
   }
 }
 
-/// All cells of tiles that lie inside, row by row: visit(cell, its place).
+/// Calls visit(cell, place_of(cell)) for all stored cells inside the map's rectangle, row by row.
 template <typename Visit>
 void Relief::for_each_cell(Visit&& visit) const {
   for (std::size_t begin = 0, end = 0; begin < corners_.size(); begin = end) {
@@ -150,7 +149,8 @@ void Relief::for_each_cell(Visit&& visit) const {
   }
 }
 
-/// `values` of the tiles that are kept up to `reach` tiles away, and of nothing between them.
+/// Copies `values` of the stored tiles up to `reach` tiles from `tile` into the window, so that loops need no
+/// look-up for each cell. Cells of tiles that are not stored get the window's `nothing`.
 template <typename T>
 void Relief::look_around(const std::vector<T>& values, std::size_t tile, int reach, Window<T>& window) const {
   const Cell middle{corners_[tile].column >> kTileBits, corners_[tile].row >> kTileBits};
@@ -181,7 +181,8 @@ void Relief::look_around(const std::vector<T>& values, std::size_t tile, int rea
   }
 }
 
-/// Per tile: whether there is nothing in it and as far as a horizon reaches to one of the four sides.
+/// Per tile: 1 if it has no point and one of its four sides has none within kReach. Its cells then have no
+/// horizon.
 std::vector<std::uint8_t> Relief::open_tiles() const {
   std::vector<std::uint8_t> bare(corners_.size());
   for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
@@ -210,7 +211,7 @@ std::vector<std::uint8_t> Relief::open_tiles() const {
 void Relief::find_horizons() {
   horizon_.assign(top_.size(), kNothing);
   Window<float> around(kNothing);
-  // The least, over all directions, of the highest structure within kReach.
+  // The horizon of a cell; kNothing if one direction has no point within kReach.
   const auto lowest = [&around](Cell from) {
     float least = kNowhere;
     for (const auto& [dc, dr] : kDirections) {
@@ -257,7 +258,7 @@ void Relief::find_pits() {
       grown.push_back(c);
     }
   });
-  // What no survey saw beside a pit is pit: the shadow under a coaming.
+  // Empty cells that touch a pit and have a horizon become pit: no survey saw the shadow under a coaming.
   while (!grown.empty()) {
     const Cell from = grown.back();
     grown.pop_back();
@@ -286,7 +287,7 @@ void Relief::find_insides() {
   });
 }
 
-/// Per cell: its rim if it is inside of a pit; NaN elsewhere.
+/// Per cell: height of the rim if it is inside a pit, m; NaN elsewhere.
 std::vector<float> Relief::rims_of_insides() const {
   std::vector<float> rims(rim_.size(), kNoRim);
   for (std::size_t place = 0; place < rims.size(); ++place) {
@@ -295,11 +296,11 @@ std::vector<float> Relief::rims_of_insides() const {
   return rims;
 }
 
-/// A gap in a coaming, or a corner that the survey missed, lowers the rim of all that is in line with it, and
-/// nothing raises one: the upper quartile of what is around is the coaming's, which follows trim and sheer.
+/// Replaces the rim of each cell inside a pit by the upper quartile of the rims within kCoversReach. A gap in
+/// a coaming, or a corner that the survey missed, lowers the rim of all cells in line with it, and nothing
+/// raises a rim. Rims farther away are left out, since a coaming's height follows trim and sheer.
 void Relief::smooth_rims() {
-  // A whole number of steps to either side: the steps meet the cell that they are about wherever the map
-  // ends.
+  // A multiple of kStride, so that the steps from -reach to reach meet the cell itself.
   const int reach = cells(kCoversReach) / kStride * kStride;
   const std::vector<float> rims = rims_of_insides();
   Window<float> window(kNoRim);
@@ -331,7 +332,7 @@ void Relief::smooth_rims() {
   }
 }
 
-/// Connected insides are one pit.
+/// Connected cells inside pits are one pit.
 void Relief::number_pits() {
   pit_.assign(top_.size(), kNoPit);
   std::uint32_t pits = 0;
@@ -357,10 +358,11 @@ void Relief::number_pits() {
   });
 }
 
-/// The lowest rim of all insides within the reach of covers, first along rows, then along columns.
+/// Finds for each cell the lowest rim within kCoversReach along both axes: the minimum along rows first, then
+/// along columns. The covers' place begins kOnRim above it.
 void Relief::raise_covers_place() {
   covers_from_.assign(top_.size(), kNowhere);
-  const int reach = cells(kCoversReach) + 1;  // from a cell inside of the rim; a gap without one is no hold
+  const int reach = cells(kCoversReach) + 1;  // one more: cells inside a pit begin one cell off its edge
   const std::vector<float> rims = rims_of_insides();
   Window<float> window(kNoRim);
   std::vector<float> along_rows;
@@ -392,7 +394,7 @@ void Relief::raise_covers_place() {
   }
 }
 
-/// With the cells around, since the sides of what stands there may lean by as much.
+/// Marks cells whose highest point is in the covers' place, and their neighbours: a cover's sides may lean.
 void Relief::find_tall_columns() {
   tall_.assign(top_.size(), 0);
   for_each_cell([&](Cell c, std::size_t place) {
@@ -420,7 +422,7 @@ std::uint32_t Relief::pit_near(const Point& p, float reach) const {
   return over ? at(pit_, cell_of(*over), kNoPit) : kNoPit;
 }
 
-/// Whether a tile that has cells from `low` to `high` has one that is inside of a pit.
+/// Whether one of the tiles that hold the cells from `low` to `high` has a cell inside a pit.
 bool Relief::any_pit(Cell low, Cell high) const {
   for (int row = low.row >> kTileBits; row <= high.row >> kTileBits; ++row) {
     for (int column = low.column >> kTileBits; column <= high.column >> kTileBits; ++column) {

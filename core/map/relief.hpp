@@ -1,11 +1,17 @@
 // The map seen from above: where are its open holds, and how high are their rims?
 //
-// A pit is a place with structure at least kDepth higher in every level direction within kReach: inside of an
-// open hatch. What lies in it is cargo's place, what stands on its rim is the covers' place: neither says
-// which ship this is. Seen as cells of kCell, in tiles of kTile x kTile cells that are kept only where the
-// map is, or where it is all around. Frame H, metres, within 100 km of the origin. Immutable. No failure: a
-// map without pits has none. Cost: some 0.1 s for a ship of 200 m; 6 kB a tile, and six tiles a point at most
-// however the points are scattered.
+// The map becomes a grid of level cells of kCell x kCell, each with the height of its highest point.
+//   horizon:       of a cell. In each of eight level directions the highest point within kReach counts; the
+//                  horizon is the lowest of these eight heights.
+//   pit:           cells whose horizon is at least kDepth above their highest point: an open hatch.
+//   inside:        a cell of a pit whose eight neighbours are pit, too.
+//   rim:           the top of the coaming around a pit. Its height comes from the horizons in the pit.
+//   covers' place: what is higher than a rim and within kCoversReach of its pit. Hatch covers stand there.
+// Cargo in pits and covers in their place change from day to day: they do not tell which ship this is.
+// Cells are stored in tiles of kTile x kTile cells, only where the map has points in or beside the tile, or
+// on all four sides of it. Input in frame H, metres, within 100 km of the origin. Immutable. Cannot fail: a
+// map without pits has none. Cost: some 0.1 s for a ship of 200 m; 6 kB a tile. A point adds at most nine
+// tiles, however the points are scattered.
 #pragma once
 
 #include <cstddef>
@@ -25,33 +31,33 @@ class Relief {
   static constexpr float kCell = 0.25F;  // m
   static constexpr int kTileBits = 4;
   static constexpr int kTile = 1 << kTileBits;  // cells
-  static constexpr float kDepth = 2.0F;   // m: deeper than anything on a deck between coamings and bulwark
-  static constexpr float kReach = 20.0F;  // m: half of the longest hatch
-  /// As far from a hatch as its covers stand when folded or rolled away, m.
+  static constexpr float kDepth = 2.0F;         // m: the deck is less than this below coamings and bulwark
+  static constexpr float kReach = 20.0F;        // m: half of the longest hatch
+  /// Covers that are folded or rolled away stand up to this far from their hatch, m.
   static constexpr float kCoversReach = 3.0F;
 
   explicit Relief(std::span<const Point> cloud_H);
 
-  /// Whether p lies kDepth or more below what surrounds it.
+  /// Whether p lies kDepth or more below the horizon of its cell.
   [[nodiscard]] bool in_pit(const Point& p) const;
 
-  /// Whether p stands higher than the rim of a pit within kCoversReach.
+  /// Whether p stands higher than the lowest rim of the pits within kCoversReach.
   [[nodiscard]] bool in_covers_place(const Point& p) const;
 
-  /// The same, or p is below something that does: covers that are folded beside a hatch may reach down to the
-  /// deck, and whoever moves them bares what is behind.
+  /// Whether p is in the covers' place, or in or beside a cell whose highest point is. Covers folded beside a
+  /// hatch may reach down to the deck; when they are moved, the surfaces behind them come into view.
   [[nodiscard]] bool under_covers_place(const Point& p) const;
 
-  /// Height of the rim of the pit that p is over, m; NaN where there is none.
+  /// Height of the rim of the pit in whose cells p lies, seen from above, m; NaN where there is no pit.
   [[nodiscard]] float rim_around(const Point& p) const {
     return at(rim_, cell_of(p), std::numeric_limits<float>::quiet_NaN());
   }
 
   static constexpr std::uint32_t kNoPit = 0xFFFFFFFFU;
-  /// Number of the pit that is nearest to p within `reach` (m); kNoPit where there is none.
+  /// Number of the pit that is nearest to p within `reach` (m) on the level; kNoPit where there is none.
   [[nodiscard]] std::uint32_t pit_near(const Point& p, float reach) const;
 
-  /// A point at p's height over the nearest pit within `reach` (m), a cell inside of its rim.
+  /// The middle of the nearest cell inside a pit within `reach` (m), at p's height; nothing without one.
   [[nodiscard]] std::optional<Point> over_pit_near(const Point& p, float reach) const;
 
   /// Heap memory that this holds, bytes.
@@ -64,7 +70,7 @@ class Relief {
   struct Cell {
     int column, row;
   };
-  /// Tiles that lie around one, side by side.
+  /// The values of a tile and of the tiles around it, copied into one rectangle of cells.
   template <typename T>
   struct Window;
 
@@ -72,7 +78,7 @@ class Relief {
   [[nodiscard]] bool inside(Cell c) const {
     return c.column >= 0 && c.column < columns_ && c.row >= 0 && c.row < rows_;
   }
-  /// Where the cell's values stand; kNoPlace for a cell that has the values of nothing.
+  /// Index of the cell in the vectors below; kNoPlace for a cell whose tile is not stored.
   [[nodiscard]] std::size_t place_of(Cell c) const {
     const std::uint32_t tile =
         inside(c) ? tiles_.find(c.column >> kTileBits, c.row >> kTileBits, 0) : BlockIndex::kNone;
@@ -110,14 +116,14 @@ class Relief {
   std::vector<Cell> corners_;  // per tile: its first cell; row by row
 
   // Per cell, tile by tile.
-  std::vector<float> top_;                  // its highest point; -infinity without one
-  std::vector<float> horizon_;              // the least, over all directions, of the highest structure
-  std::vector<float> rim_;                  // of a pit: the height of its rim; NaN elsewhere
-  std::vector<std::uint8_t> inside_pit_;    // whether it and the eight around it are pit
-  std::vector<std::uint32_t> pit_;          // inside of one: its number; kNoPit elsewhere
-  std::vector<std::uint8_t> tall_;          // whether it or one around it reaches into the covers' place
-  std::vector<float> covers_from_;          // above this height is the covers' place; infinity = nowhere
-  std::vector<std::uint8_t> tile_has_pit_;  // per tile: whether a cell of it is inside of one
+  std::vector<float> top_;                  // height of its highest point, m; -infinity without points
+  std::vector<float> horizon_;              // m; -infinity if the map has nothing in one of the directions
+  std::vector<float> rim_;                  // in a pit: height of the rim, m; NaN elsewhere
+  std::vector<std::uint8_t> inside_pit_;    // 1: it and its eight neighbours are pit
+  std::vector<std::uint32_t> pit_;          // inside a pit: the pit's number; kNoPit elsewhere
+  std::vector<std::uint8_t> tall_;          // 1: its highest point, or a neighbour's, is in covers' place
+  std::vector<float> covers_from_;          // covers' place begins at this height, m; infinity = not here
+  std::vector<std::uint8_t> tile_has_pit_;  // per tile: 1 if one of its cells is inside a pit
 };
 
 }  // namespace hulltrack

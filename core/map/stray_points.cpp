@@ -13,7 +13,7 @@
 namespace hulltrack {
 namespace {
 
-// What is counted as surface: a place where a firing leaves the same point ten thousand times is one of them.
+// Surface is counted in occupied voxels of this size, so that ten thousand equal points count once.
 constexpr double kSurfaceVoxel = 0.4;  // m
 
 using Cell = std::array<int, 3>;
@@ -23,7 +23,7 @@ Cell cell_of(const Point& p) {
   return {cell(p.x()), cell(p.y()), cell(p.z())};
 }
 
-/// The pieces of a cloud: occupied cells that touch are of one piece, those with a cell between are not.
+/// The pieces of a cloud: occupied cells that share a face, an edge or a corner are of one piece.
 class Pieces {
  public:
   explicit Pieces(const Cloud& cloud) {

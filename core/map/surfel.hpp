@@ -1,6 +1,7 @@
-// A point of the map's fixed subset with what its surroundings look like.
+// The surface around one map point: where it is, which way it faces, and what else is known of it.
 //
-// Frame H, metres. The normal's sign is arbitrary unless the surfel is `backed`. Plain values.
+// Each point of the metric subset (hull_map.hpp) has a surfel, also where the map is not flat (`planar` is
+// false). Frame H, metres. Plain values.
 #pragma once
 
 #include <cstddef>
@@ -29,15 +30,16 @@ inline constexpr std::size_t kSurfaceClasses = 3;                               
 }
 
 struct Surfel {
+  /// Unit; sign arbitrary unless `backed`.
   Point normal_H = Point::UnitZ();
-  /// Mean of the map around the point: where the plane is, with a tenth of one map point's error.
+  /// Mean of the map points around it: a point of the plane, with a tenth of one map point's error.
   Point centre_H = Point::Zero();
   SurfaceClass surface = SurfaceClass::other;
-  /// The map is a plane all around the point: the normal can be trusted and no edge is near.
+  /// The map is flat all around the point: the normal can be trusted and no edge is near.
   bool planar = false;
-  /// It lies where cargo or hatch covers come and go: its absence says nothing.
+  /// It lies where cargo or hatch covers come and go. A scan that does not show it says nothing.
   bool movable = false;
-  /// Another surface lies close behind: it is seen from the side to which the normal points, or not at all.
+  /// Another surface lies close behind. It can be seen only from the side to which the normal points.
   bool backed = false;
   static constexpr std::uint32_t kNoPatch = 0xFFFFFFFFU;
   std::uint32_t patch = kNoPatch;  // number of the patch that it belongs to (patches.hpp)

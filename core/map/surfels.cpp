@@ -8,9 +8,9 @@ namespace hulltrack {
 namespace {
 
 constexpr std::size_t kFewestNeighbours = 8;
-constexpr double kFlat = 0.025;        // m, RMS distance from the plane: map noise and voxel size together
-constexpr double kNarrow = 0.08;       // m, RMS spread across: half of a full disc's radius / 2 = 0.15
-constexpr double kOffCentre = 0.06;    // m; a half disc's centroid lies 4 r / (3 pi) = 0.13 m aside
+constexpr double kFlat = 0.025;        // m: largest RMS distance from the plane; map noise and voxel size
+constexpr double kNarrow = 0.08;       // m: smallest RMS extent in the plane; a full disc has r / 2 = 0.15
+constexpr double kOffCentre = 0.06;    // m: largest distance of the centroid; half disc: 4 r / (3 pi) = 0.13
 constexpr float kClassCosine = 0.85F;  // 31.8 deg
 
 SurfaceClass classify(const Point& n) {

@@ -10,21 +10,22 @@
 namespace hulltrack {
 namespace {
 
-// Kernels of the steps, m. A machine within its class shows a quay at most 20 cm off: from there the narrow
-// ones lead to it, and a few returns that something else gave, far away where they turn much, pull little.
-// What they leave unexplained is tried with the wide ones, which reach as far as pairs do.
+// Kernels of the least squares steps, m. The narrow ones are tried first: a machine within its class shows
+// the quay at most 20 cm off, and from there they find it. Wrong returns, even far ones that could turn much,
+// pull little. The wide kernels are tried if too few agree; they reach as far as the observer's gate.
 constexpr std::array<double, 3> kNarrow = {0.10, 0.05, 0.05};
 constexpr std::array<double, 5> kWide = {0.60, 0.30, 0.10, 0.05, 0.05};
-constexpr double kSettled = 5e-4;    // m: a step that was smaller is not taken again with the same kernel
-constexpr double kAgrees = 0.10;     // m: two kernels, five sigma of a return
-constexpr double kExplained = 0.9;   // of the observations, in place 97 to 99 in 100: no need to look further
-constexpr double kMuchBetter = 1.1;  // times the observations explained: else the machine has its word
+constexpr double kSettled = 5e-4;    // m: after a smaller step the same kernel is not used again
+constexpr double kAgrees = 0.10;     // m, of a residual: two kernels, five sigma of a return
+constexpr double kExplained = 0.9;   // share that agrees without wide kernels; in place 0.97 to 0.99 do
+constexpr double kMuchBetter = 1.1;  // times as many have to agree with the wide fit, or the narrow one stays
 
-/// What a twist about the centre changes an observation's offset by, for each of its six.
+/// One observation as a row of the least squares: by how much each part of a twist about the centre changes
+/// its offset.
 struct Row {
   Eigen::Vector3d turn, shift;
   double offset;
-  PlaneSystem::Vector7 weighed;  // as PlaneSystem wants it
+  PlaneSystem::Vector7 weighed;  // the same row in PlaneSystem's units
 
   Row(const QuayObservation& o, const Eigen::Vector3d& centre, const PlaneSystem& system)
       : turn((o.p_W - centre).cross(o.n_W)),
@@ -55,7 +56,7 @@ Fit fit(std::span<const Row> rows, const Eigen::Vector3d& centre, std::span<cons
       system.add(row.weighed, row.residual(fit.twist));
     }
     const Twist step = system.solve().twist;
-    fit.twist -= step;  // the system moves returns onto planes, E the other way
+    fit.twist -= step;  // the step moves returns onto planes; E moves planes to where the returns are
     fit.H = system.normal_matrix();
     const bool again = i + 1 < kernels.size() && kernels[i + 1] == kernels[i];
     if (again && PlaneSystem::kLever * step.head<3>().norm() + step.tail<3>().norm() < kSettled) {
@@ -68,9 +69,9 @@ Fit fit(std::span<const Row> rows, const Eigen::Vector3d& centre, std::span<cons
   return fit;
 }
 
-/// One measurement a direction that is held.
+/// One measurement for each direction that kFewestPairs hold.
 std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
-  // In rotations times kLever and translations, as the system weighs them.
+  // Directions are compared with rotations times kLever, so that both parts of a twist are in metres.
   Twist scale;
   scale << Eigen::Vector3d::Constant(PlaneSystem::kLever), Eigen::Vector3d::Ones();
   const Twist inverse = scale.cwiseInverse();

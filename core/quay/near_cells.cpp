@@ -7,11 +7,12 @@
 namespace hulltrack {
 namespace {
 
-constexpr float kFarthest = 1e5F;  // m
+constexpr float kFarthest = 1e5F;  // m: a place farther from the origin is near nothing
 constexpr int kBits = 2;           // blocks of 4 x 4 x 4
 constexpr int kSide = 1 << kBits;
 constexpr int kMetre = 5;  // cells
 
+/// Number of the cell's bit in its block.
 unsigned place_of(int x, int y, int z) {
   constexpr int kMask = kSide - 1;
   return static_cast<unsigned>(((x & kMask) << (2 * kBits)) | ((y & kMask) << kBits) | (z & kMask));
@@ -22,7 +23,7 @@ unsigned place_of(int x, int y, int z) {
 NearCells::NearCells(std::span<const Point> points) {
   BlockIndex index;
   std::vector<std::uint64_t> occupied;
-  std::vector<Cell> blocks;  // the first cell of each
+  std::vector<Cell> blocks;  // the first cell of each block
   for (const Point& p : points) {
     if (is_far(p)) {
       continue;
@@ -40,7 +41,7 @@ NearCells::NearCells(std::span<const Point> points) {
   }
 }
 
-/// The cell, and those that share a face or an edge with it.
+/// Marks as near the cell and the 18 that share a face or an edge with it; not the eight at its corners.
 void NearCells::mark(const Cell& cell, std::vector<Cell>& blocks) {
   columns_.add(cell.x >> kBits, cell.y >> kBits, 0);
   for (int dx = -1; dx <= 1; ++dx) {
@@ -61,6 +62,7 @@ void NearCells::mark(const Cell& cell, std::vector<Cell>& blocks) {
   }
 }
 
+/// Finds the block's cells that are inside a level surface. `block`: its first cell.
 void NearCells::mark_level(const Cell& block) {
   constexpr std::array<std::array<int, 2>, 4> kSides = {
       {{kMetre, 0}, {-kMetre, 0}, {0, kMetre}, {0, -kMetre}}};
@@ -87,7 +89,8 @@ std::uint64_t NearCells::bit_of(const Cell& cell) {
   return std::uint64_t{1} << place_of(cell.x, cell.y, cell.z);
 }
 
-/// Without a branch: whether there is one is hard to foretell. The empty one where there is none.
+/// The cell's block, or the empty block blocks_[0] if it does not exist: kNone + 1 is 0. So there is no
+/// branch, which the processor could not predict.
 const NearCells::Block& NearCells::block_of(const Cell& cell) const {
   static_assert(BlockIndex::kNone + 1U == 0U);
   const std::uint32_t place = 1 + index_.find(cell.x >> kBits, cell.y >> kBits, cell.z >> kBits);

@@ -1,11 +1,10 @@
-// Is anything of a map near this place? For who asks often, of returns that may lie elsewhere than they seem
-// to.
+// Is any point of a map near this place? A fast yes or no without distances, for many places.
 //
-// Cells of 0.2 m, kept where there is something: a cell is near if a point lies in it or in a cell that
-// shares a face or an edge with it: as a rule within 0.3 m, never beyond 0.6 m. Metres. Precondition: finite
-// points. Immutable; any number of threads may ask. No failure: what lies farther than 100 km from the origin
-// is near nothing. Cost: some 30 ns to ask; a dense cloud takes some bytes a point, a point that stands alone
-// hundreds.
+// Space is cut into cells of 0.2 m, with bits for each. A cell is near if a point of the map lies in it, or
+// in a cell that shares a face or an edge with it. So a place that is near has a point within 0.3 m as a
+// rule, and always within 0.6 m. Metres. Precondition: finite points. Immutable; any number of threads may
+// ask. No failure: a place farther than 100 km from the origin is near nothing. Cost: some 30 ns to ask.
+// Memory: some bytes a point of a dense cloud, hundreds for a point that stands alone.
 #pragma once
 
 #include <cstdint>
@@ -25,11 +24,13 @@ class NearCells {
 
   struct Answer {
     bool near = false;
-    /// And so is what lies a metre off to all four sides on the level: inside a large level surface.
+    /// The cell is near, and so are the cells 1 m away along +-X and +-Y at the same height: the place is
+    /// inside a large level surface.
     bool inside_level = false;
   };
   [[nodiscard]] Answer at(const Point& p) const;
-  /// Whether there is anything straight above or beneath: nothing is known of where the map does not reach.
+  /// Whether the map has a point in the same column of 0.8 m x 0.8 m, at any height. Nothing is known of
+  /// places where it has none.
   [[nodiscard]] bool in_reach(const Point& p) const;
 
  private:
@@ -49,8 +50,8 @@ class NearCells {
   void mark_level(const Cell& block);
 
   BlockIndex index_;
-  BlockIndex columns_;             // of blocks
-  std::vector<Block> blocks_{{}};  // an empty one, then those of the index
+  BlockIndex columns_;             // columns of blocks in which the map has a point
+  std::vector<Block> blocks_{{}};  // an empty block first, then those of index_
 };
 
 }  // namespace hulltrack

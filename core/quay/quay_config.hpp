@@ -1,4 +1,5 @@
-// What a site says of the quay's top: [quay] of the configuration (ICD 5) but for the map, as plain values.
+// The section [quay] of the configuration (ICD 5) but for the map: what a site says of the quay's top.
+// Plain values.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +8,7 @@
 namespace hulltrack {
 
 struct QuayConfig {
-  bool top_is_witness = true;            // false: height = "off"
+  bool top_is_witness = true;            // false if height = "off": the top is not used
   std::optional<double> height;          // of its top at W's origin, m; empty = learn
   std::optional<Eigen::Vector2d> slope;  // of its top along X and along Y, rad; empty = learn
 };

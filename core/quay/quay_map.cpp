@@ -16,10 +16,12 @@ namespace {
 
 using TileKey = std::array<int, 3>;  // class, column, row
 
-// Something else within a gate's reach of a plane, along its normal, may be taken for it: the other side of a
-// thin wall or of a leg, a step, the foot of a wall. From three times a flat surface's noise on. m
+// A point of the cloud that is farther than this off a plane, along its normal, is of something else, m: the
+// other side of a thin wall or of a leg, a step, the foot of a wall. A scan could take it for the plane. It
+// is three times a flat surface's noise.
 constexpr float kAnother = 0.12F;
 
+/// Whether nothing else lies before or behind the surfel within kAlone. `around`: scratch.
 bool is_alone(const Surfel& surfel, const KdTree& tree, Cloud& around) {
   tree.within(surfel.centre_H, QuayMap::kAlone, around);
   return std::none_of(around.begin(), around.end(), [&](const Point& p) {
@@ -48,9 +50,9 @@ TileKey key_of(const QuayMap::Plane& plane) {
   return {static_cast<int>(plane.surface), tile(plane.centre_W.x()), tile(plane.centre_W.y())};
 }
 
-/// Those of a tile together, in no order within it.
+/// The planes sorted by tile, shuffled within each.
 std::vector<QuayMap::Plane> tile_by_tile(std::vector<QuayMap::Plane> planes) {
-  std::shuffle(planes.begin(), planes.end(), std::mt19937(1));  // the same planes, the same order
+  std::shuffle(planes.begin(), planes.end(), std::mt19937(1));  // fixed seed: the same map, the same order
   std::stable_sort(planes.begin(), planes.end(),
                    [](const QuayMap::Plane& a, const QuayMap::Plane& b) { return key_of(a) < key_of(b); });
   return planes;

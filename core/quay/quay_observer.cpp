@@ -6,7 +6,7 @@
 namespace hulltrack {
 namespace {
 
-/// The rarest of the classes of `named`, by its bits.
+/// The rarest class whose bit is set in `named`: transverse before longitudinal, other, horizontal.
 constexpr SurfaceClass rarest_of(std::size_t named) {
   SurfaceClass rarest = SurfaceClass::horizontal;
   for (const SurfaceClass surface :
@@ -61,12 +61,13 @@ void QuayObserver::forget() {
   }
 }
 
-/// A return that may be of several classes is of the rarest.
+/// Picks the returns that are compared with planes. A return that may be of several classes counts as one of
+/// the rarest.
 void QuayObserver::choose(const QuayMap& map, const Cloud& returns_W, const OfClass& most) {
   for (Cloud& of_class : candidates_W_) {
     of_class.clear();
   }
-  // All are asked before one is looked at: so they do not wait for each other.
+  // All cells are read before the first is used, so that the memory accesses overlap.
   near_.resize(returns_W.size());
   std::transform(returns_W.begin(), returns_W.end(), near_.begin(),
                  [&map](const Point& p) { return map.classes_near(p); });

@@ -1,9 +1,10 @@
-// What do returns say of the quay's surfaces, and what did those of the last second?
+// Compares returns with the quay's surfaces, and keeps the observations of the last second.
 //
-// A return near a plane of a quay map, or near the quay's top, observes it: by its offset along the plane's
-// normal. Walls are few and most returns lie on the top, so of each class of surfaces some are taken, and
-// the newest are kept. Frame W, metres. Thread rule: one owner, scratch is kept. Cost: bounded by the number
-// of returns that it is shown, whatever the map's size.
+// An observation is a return near a plane of the quay map, or near the quay's top, with its offset along the
+// plane's normal. Most returns lie on the top and few on walls. So a limited number of returns is compared
+// for each class of surfaces, and a limited number of observations is kept, the newest ones. Frame W, metres.
+// Thread rule: one owner, scratch is kept. No failure: without returns near planes there are no observations.
+// Cost: bounded by the number of returns, whatever the map's size.
 #pragma once
 
 #include <array>
@@ -16,35 +17,34 @@
 
 namespace hulltrack {
 
-/// A piece of the quay that a return has met.
+/// A place of the quay's surface that a return has met.
 struct QuayObservation {
-  Eigen::Vector3d p_W;  // where it is
-  Eigen::Vector3d n_W;  // its unit normal
+  Eigen::Vector3d p_W;  // the place: the return's foot on the plane
+  Eigen::Vector3d n_W;  // the plane's unit normal
   double offset;        // n . (return - p), m
   SurfaceClass surface;
-  std::uint32_t age;  // frames since then: 0 of the newest
+  std::uint32_t age;  // frames since the return was measured: 0 is the newest frame
 };
 
 struct QuayObservations {
-  std::vector<QuayObservation> all;  // of the last frames
+  std::vector<QuayObservation> all;  // of the last kFrames frames
 };
 
 class QuayObserver {
  public:
-  /// Observations are kept for so many frames, a second, and of each class so many, the newest.
-  static constexpr std::uint32_t kFrames = 10;
-  static constexpr std::size_t kOfClass = 100;
+  static constexpr std::uint32_t kFrames = 10;  // observations are kept for so many frames: one second
+  static constexpr std::size_t kOfClass = 100;  // and of each class only so many, the newest
   static constexpr float kGate = QuayMap::kGate;
   using OfClass = std::array<std::size_t, QuayMap::kClasses>;
 
-  /// Shows it returns of a frame; at most so many that may be of each class are held against planes: evenly,
-  /// others each frame. The answer lives until the next call.
+  /// Takes the returns of one frame. At most `most` of each class are compared with planes: evenly spaced,
+  /// and different ones each frame. The answer lives until the next call.
   [[nodiscard]] const QuayObservations& observe(const QuayMap& map, const Cloud& returns_W,
                                                 const OfClass& most);
-  /// Of the quay's top, by all of the returns.
+  /// The same against the quay's top; all returns are compared.
   [[nodiscard]] const QuayObservations& observe(const QuayPlane& top, const Cloud& returns_W);
 
-  /// What was observed is of other joints than what comes.
+  /// Drops all observations: the joints may have changed, and old and new ones do not belong together.
   void forget();
 
  private:

@@ -7,11 +7,11 @@
 namespace hulltrack {
 namespace {
 
-// Within this of a plane a ray has met it, m.
+// A ray that ends within this of a plane, along its normal, has not passed through it, m.
 constexpr float kOnPlane = 0.15F;
 
-/// Index of the next one from `from` on, or the size. Most of a scan is the ship: memchr passes over her at
-/// once.
+/// Index of the next return of kind `wanted` from `from` on, or the size. memchr is fast over the long runs
+/// of returns of the ship.
 std::size_t next_of(ReturnOf wanted, const std::vector<ReturnOf>& of, std::size_t from) {
   static_assert(sizeof(ReturnOf) == 1);
   const void* found =
@@ -60,7 +60,8 @@ const Cloud& QuaySight::returns_of(const FilteredScan& scan) {
   return returns_W_;
 }
 
-/// Takes `most` returns that may be the quay's at most, evenly out of the scan, others each frame.
+/// Clears the counts, and picks at most `most` returns that may be the quay's: evenly spaced in the scan,
+/// different ones each frame.
 void QuaySight::begin_frame(const FilteredScan& scan, std::size_t most) {
   for (QuayCount& count : seen_.planes) {
     count.reached = 0;
@@ -87,6 +88,7 @@ void QuaySight::begin_frame(const FilteredScan& scan, std::size_t most) {
   }
 }
 
+/// Counts the map's planes of one class that one LiDAR's rays reached, and those that they passed through.
 void QuaySight::look_through(const QuayMap& map, std::size_t surface, const ScanView& view) {
   const Point sensor_W = view.T_W_L().translation().cast<float>();
   const Eigen::Matrix3f R_L_W = view.T_W_L().linear().transpose().cast<float>();
@@ -95,7 +97,7 @@ void QuaySight::look_through(const QuayMap& map, std::size_t surface, const Scan
     near += in_reach(tile, sensor_W) ? tile.count : 0;
   }
   const std::size_t stride = std::max<std::size_t>(1, near / kProbes);
-  std::size_t next = turn_ % stride;  // counted over the tiles in reach
+  std::size_t next = turn_ % stride;  // index within the tile; the stride goes on from tile to tile
   for (const QuayMap::Tile& tile : map.tiles(surface)) {
     if (!in_reach(tile, sensor_W)) {
       continue;

@@ -1,14 +1,18 @@
-// Where does the scan see the quay, against where it stands?
+// Where does the scan see the quay, compared with where the map, or the quay's top, has it?
 //
-// The quay does not move in W, so what the scan finds beside its place says how far the sensor is from where
-// joints and mounts put it, whatever the ship does. Two sources: the planes of a quay map, and the quay's top
-// as one large plane. Returns near them observe them (quay_observer.hpp). Besides, planes of the map are
-// looked for along the scan's rays: those that rays have gone through are not where they should be.
-// Returns on the hull are left out by its region; without one every return is looked at, and only a map can
-// tell which are the quay's. The hull's drift within a scan is in the returns too (scan_filter.hpp): below
-// 2 cm at hull.max_speed.
-// Frames W and L, metres. Thread rule: one owner, scratch is kept. Cost: bounded, whatever the map's and the
-// scan's size: kLookedUp returns and kProbes planes of each class a frame, others each frame.
+// The quay does not move in W. So an offset of the quay shows how far the sensor is from where joints and
+// mounts put it, whatever the ship does.
+// - It picks the returns that may be the quay's. With a region of the hull these are the returns outside of
+//   it. Without one they are all returns, and only a map can tell which are the quay's.
+// - It compares these with the planes of the quay map, or with the quay's top as one large plane. The outcome
+//   is observations (quay_observer.hpp).
+// - With a map it also counts the planes that rays have passed through: they are not where they should be.
+// The scan filter moves all returns along with the hull's drift within a scan (scan_filter.hpp), the quay's
+// too: an error below 2 cm at hull.max_speed.
+//
+// Frames W and L, metres. Thread rule: one owner, scratch is kept. No failure: without a sight of the quay
+// the counts are 0. Cost: bounded by kLookedUp and kProbes, whatever the map's and the scan's size; other
+// returns and planes are looked at each frame.
 #pragma once
 
 #include <array>
@@ -23,49 +27,53 @@
 
 namespace hulltrack {
 
-/// Planes of the map of one class that rays reached.
+/// Planes of one class of the map, in one frame.
 struct QuayCount {
-  std::uint32_t reached = 0;
-  Cloud seen_through_W;  // middles of those that rays went through
+  std::uint32_t reached = 0;  // planes with a ray that ended near or behind them
+  Cloud seen_through_W;       // middles of the planes that a ray has passed through
 };
 
 struct QuaySighting {
-  const QuayObservations* observed = nullptr;       // of the last frames; lives as long as the sight
-  std::array<QuayCount, QuayMap::kClasses> planes;  // of this frame
-  std::size_t asked = 0;  // returns of this frame that lie where the top is looked for, on it or not
+  const QuayObservations* observed = nullptr;       // of the last frames; lives as long as the QuaySight
+  std::array<QuayCount, QuayMap::kClasses> planes;  // of this frame; 0 without a map
+  std::size_t asked = 0;  // returns of this frame within the top's area, on the top or not; 0 with a map
 };
 
 class QuaySight {
  public:
-  /// Returns that the top is looked for in, a frame.
+  /// Without a map at most this many returns a frame are compared with the top.
   static constexpr std::size_t kReturns = 300;
-  /// With a map kLookedUp returns are asked what they may be of, and of each class so many are taken: walls
-  /// are rare and hold what the top does not. All of them where a LiDAR of 16 lasers looks at a ship: where
-  /// walls are few, a third of them leaves travel unseen that all of them hold to 0.17 m.
+  /// With a map at most this many returns a frame are looked up for the class that they may be of. These are
+  /// all of them where a LiDAR of 16 lasers looks at a ship. Where walls are few, a third of the returns
+  /// leaves travel unseen; all of them hold it to 0.17 m.
   static constexpr std::size_t kLookedUp = 3000;
+  /// Of each class at most so many of them are compared with planes, by SurfaceClass. Walls are rare, and
+  /// hold directions that the top does not.
   static constexpr QuayObserver::OfClass kReturnsOf = {80, 80, 60, 40};
-  static constexpr std::uint32_t kProbes = 150;  // a frame, class and LiDAR
-  static constexpr float kFarthest = 60.0F;      // m from the sensor
+  /// Planes of each class that each LiDAR looks for in a frame: about so many, and fewer than twice as many.
+  static constexpr std::uint32_t kProbes = 150;
+  static constexpr float kFarthest = 60.0F;  // planes farther than this from the sensor are left out, m
 
-  /// `has_region`: the scan was cropped to the hull's region, so that what is outside is not hull.
+  /// `has_region`: the scan was cropped to the hull's region, so that returns outside of it are not hull.
   explicit QuaySight(bool has_region) : has_region_(has_region) {}
 
-  /// What the scan shows of a map's planes. The answer lives until the next call.
+  /// What the scan shows of the map's planes. The answer lives until the next call.
   [[nodiscard]] const QuaySighting& look_for(const QuayMap& map, const FilteredScan& scan,
                                              std::span<const ScanView> views);
 
-  /// Of the quay's top, in the level extent of `area_W` if there is one. Precondition: there is a region.
+  /// What the scan shows of the quay's top, within the X and Y of `area_W` if that is given. Precondition:
+  /// there is a region.
   [[nodiscard]] const QuaySighting& look_for(const QuayPlane& top, const FilteredScan& scan,
                                              const Box* area_W = nullptr);
 
-  /// For who does not know yet what to look for: the returns that the top would be looked for in. Forgets
-  /// what was observed.
+  /// The returns that would be compared with the top, for a caller that has yet to find it. Drops all
+  /// observations.
   [[nodiscard]] const Cloud& returns_of(const FilteredScan& scan);
 
   /// The returns of the last call.
   [[nodiscard]] const Cloud& returns_W() const { return returns_W_; }
 
-  /// What was observed is of other joints than what comes.
+  /// Drops all observations: the joints may have changed.
   void forget() { observer_.forget(); }
 
  private:
@@ -73,7 +81,7 @@ class QuaySight {
   void look_through(const QuayMap& map, std::size_t surface, const ScanView& view);
 
   bool has_region_;
-  std::uint32_t turn_ = 0;  // which part of the returns and planes is looked at
+  std::uint32_t turn_ = 0;  // number of the frame: decides which returns and planes are looked at
   QuayObserver observer_;
   QuaySighting seen_;
   // Scratch:

@@ -15,26 +15,28 @@ namespace hulltrack {
 namespace {
 
 constexpr std::size_t kFewestReturns = 300;
-constexpr double kLeastShare = 0.5;  // of the returns agree: else something else is as large as the top
-constexpr float kAgrees = 0.10F;     // m, five sigma of a return
-// Half of the returns are on the top, so one trial in eight has three of them: 100 fail once in 600,000
-// times, and 500 are drawn for those that are discarded.
+constexpr double kLeastShare = 0.5;  // of the returns have to agree: else the plane may be something else's
+constexpr float kAgrees = 0.10F;     // m off the plane: five sigma of a return
+// A trial is a plane through three random returns. If half of the returns are on the top, one trial in eight
+// has all three there, and 100 trials fail once in 600,000 times. Up to 500 triples are drawn, because some
+// are discarded.
 constexpr int kTrials = 100;
 constexpr int kDraws = 500;
-constexpr std::size_t kJudges = 500;  // returns that a trial is judged by
-constexpr float kWide = 10.0F;        // m2: twice the area of a trial's triangle, level
+constexpr std::size_t kJudges = 500;  // returns that a trial is compared with
+constexpr float kWide = 10.0F;        // m^2: twice the least level area of a trial's triangle
 constexpr int kFits = 3;
-// Returns are spread by this, m, standard deviation, across the way in which they are spread least: then an
-// error of 5 mm that they share turns the plane by 0.1 deg.
+// Returns on the plane have to be spread by this in the direction in which they are spread least, standard
+// deviation, m. An error of 5 mm that they share then turns the plane by 0.1 deg.
 constexpr double kLeastSpread = 3.0;
-constexpr double kOutlying = 0.05;  // of the returns at either end of the area: they may be of anything
+constexpr double kOutlying = 0.05;  // share at either end of the area that is cut off: it may be of anything
 
-/// z = c.z + c.x * x + c.y * y.
+/// A plane: z = c.z + c.x * x + c.y * y.
 using Coefficients = Eigen::Vector3f;
 
+/// How far p is above the plane, m.
 float off(const Coefficients& c, const Point& p) { return p.z() - (c.x() * p.x() + c.y() * p.y() + c.z()); }
 
-/// Numbers below `limit`, the same ones each time: a recording has to give the same answer again.
+/// Random numbers below `limit`, the same sequence each time: a replayed recording gives the same answer.
 class Draw {
  public:
   std::size_t below(std::size_t limit) {
@@ -46,6 +48,7 @@ class Draw {
   std::uint64_t state_ = 1;
 };
 
+/// The plane through three points; nothing if they are too close together or it is too steep for a quay.
 std::optional<Coefficients> through(const Point& a, const Point& b, const Point& c) {
   const Eigen::Vector3f normal = (b - a).cross(c - a);
   if (!(std::abs(normal.z()) >= kWide)) {
@@ -88,11 +91,12 @@ std::optional<Coefficients> most_agreed_on(std::span<const Point> returns_W) {
   return best;
 }
 
-/// Sums over the returns that agree with a plane, about `middle` for the digits' sake.
+/// Sums over the returns that agree with a plane, for fitting it. Coordinates are taken from a `middle` near
+/// them, which keeps the sums accurate.
 struct Agreement {
-  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();  // of (x, y, 1)
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  double squares = 0.0;  // of what they are off by
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();  // sum of r r^T, with r = (x, y, 1)
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();  // sum of r z
+  double squares = 0.0;                         // sum of the squared distances from the plane, m^2
   std::size_t count = 0;
 };
 
@@ -111,7 +115,7 @@ Agreement agreeing_with(const Coefficients& c, std::span<const Point> returns_W,
   return sums;
 }
 
-/// Along X and Y; z is the box's, of no meaning.
+/// Where the returns on the plane lie along X and Y. The box's z has no meaning.
 Box area_of(const Coefficients& c, std::span<const Point> returns_W) {
   std::array<std::vector<float>, 2> along;
   for (const Point& p : returns_W) {
@@ -170,7 +174,8 @@ std::optional<SeenTop> find_quay_top(std::span<const Point> returns_W) {
   if (!(least >= kLeastSpread) || slope.cwiseAbs().maxCoeff() > kSteepestQuay) {
     return std::nullopt;
   }
-  // A quay is uneven, and a part of it slopes otherwise than the whole.
+  // A quay is uneven, so a part of it slopes otherwise than the whole. What the distances from the plane
+  // exceed the noise of a return by is taken for unevenness, and adds to the slope's sigma.
   const double uneven =
       std::sqrt(std::max(0.0, sums.squares / n - PlaneSystem::kPairSigma * PlaneSystem::kPairSigma));
   const double sigma = std::hypot(PlaneSystem::kInflation * PlaneSystem::kPairSigma / std::sqrt(n),

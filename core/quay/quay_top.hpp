@@ -1,10 +1,9 @@
 // The quay's top as one large plane: as configured, or as a session finds it by itself.
 //
-// Of returns that are not the hull's most lie on the quay's top; what stands on it rises out of it and is
-// less. The plane that most returns agree on is found by trying planes through three of them, then fitted.
-// Frame W, metres, radians. Pure. Failure: no plane, where fewer than half agree on one, where they lie too
-// close together to tell its slope, or where it slopes by more than a quay does. Cost: 0.5 ms for 6,000
-// returns.
+// Input: returns that are not the hull's. Most of them lie on the quay's top, fewer on what stands on it.
+// Planes through three returns are tried (RANSAC); the plane that most returns agree with is fitted to them.
+// Frame W, metres, radians. Pure. Failure: no plane if fewer than half agree with one, if they lie too close
+// together to tell its slope, or if it slopes by more than a quay does. Cost: 0.5 ms for 6,000 returns.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,17 +22,17 @@ struct QuayPlane {
   [[nodiscard]] double above(const Eigen::Vector3d& p_W) const;  // along the normal, m
 };
 
-/// A quay's top as it was seen with the joints of that moment.
+/// A quay's top as it was found in returns; it is as wrong as the joints were then.
 struct SeenTop {
   QuayPlane plane;
-  Box area_W;                // of nine in ten returns on it, along X and along Y
-  Eigen::Vector3d middle_W;  // of the returns on it: what its tilt is known about
-  double sigma_slope = 0.0;  // rad, of the axis that is known worse, for any part of the area
+  Box area_W;                // from the 5th to the 95th percentile of the returns on it, along X and along Y
+  Eigen::Vector3d middle_W;  // mean of the returns on it: an error of the slope turns the plane about it
+  double sigma_slope = 0.0;  // of the slope, rad, about the axis that is known worse
 };
 
-constexpr double kSteepestQuay = 0.0873;  // rad, 5 deg: what [quay] slope may be
+constexpr double kSteepestQuay = 0.0873;  // rad, 5 deg: the largest [quay] slope
 
-/// `returns_W`: of what is not hull; in any order.
+/// The top, if there is one. `returns_W`: returns that are not the hull's, in any order.
 [[nodiscard]] std::optional<SeenTop> find_quay_top(std::span<const Point> returns_W);
 
 }  // namespace hulltrack

@@ -48,7 +48,8 @@ SurfaceCells::Classes SurfaceCells::at(const Point& p) const {
   const int x = cell(p.x());
   const int y = cell(p.y());
   const int z = cell(p.z());
-  // Without a branch, which would be hard to foretell. Where there is no block the empty one answers.
+  // Where there is no block kNone + 1 is 0, and the empty block answers. So there is no branch, which the
+  // processor could not predict.
   static_assert(BlockIndex::kNone + 1U == 0U);
   const std::uint32_t place = 1 + index_.find(x >> kBits, y >> kBits, z >> kBits);
   return blocks_[place][in_block(x, y, z)];

@@ -1,10 +1,11 @@
-// Of which classes of surface may a return at this place be? A quick answer, before the nearest one is asked
-// for.
+// Which classes of surface have a plane within reach of this place? A fast filter before the search tree is
+// asked for the nearest plane.
 //
-// Cells of 0.6 m, kept where there are planes. A cell names every class that has a plane of which some point
-// of the cell is within reach; it may name some that have none, by a cell's size. Metres. No failure: far
-// from all planes no class is named. Thread rule: any number of threads may ask. Cost: 10 ns to ask, 3 us a
-// plane to build, some 300 bytes a plane that stands alone and 20 where many do.
+// Space is cut into cells of 0.6 m. Each cell has a bit for each class (surfel.hpp), which is set if a plane
+// of the class reaches any point of the cell. So a place may have a bit too many, by up to a cell's size, but
+// never one too few. Metres. No failure: far from all planes no bit is set. Thread rule: any number of
+// threads may ask. Cost: 10 ns to ask, 3 us a plane to build. Memory: some 300 bytes for a plane that stands
+// alone, 20 where many are close together.
 #pragma once
 
 #include <array>
@@ -22,9 +23,11 @@ class SurfaceCells {
   static constexpr float kCell = 0.6F;  // m
   using Classes = std::uint8_t;         // bit i: SurfaceClass i
 
-  /// A plane that reaches `along` to both sides of its middle along its unit normal, `beside` across it, m.
+  /// Adds a plane. It reaches a point that is no farther than `along` (m) off it along its unit normal, to
+  /// either side, and no farther than `beside` (m) from its middle across the normal.
   void add(const Point& middle, const Point& normal, float along, float beside, SurfaceClass surface);
 
+  /// Classes with a plane that may reach p.
   [[nodiscard]] Classes at(const Point& p) const;
 
  private:
@@ -33,7 +36,7 @@ class SurfaceCells {
   [[nodiscard]] static std::size_t in_block(int x, int y, int z);
 
   BlockIndex index_;
-  std::vector<std::array<Classes, kCells>> blocks_{{}};  // an empty one, then those of the index
+  std::vector<std::array<Classes, kCells>> blocks_{{}};  // an empty block first, then those of index_
 };
 
 }  // namespace hulltrack

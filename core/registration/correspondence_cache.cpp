@@ -7,19 +7,20 @@
 namespace hulltrack {
 namespace {
 
-// Searches look this share of the gate beyond it, so that points without a partner may move that far
-// before they are searched for again.
+// Searches reach (1 + kMargin) times the gate. A point without a partner may then move by kMargin times the
+// gate before it is searched for again.
 constexpr float kMargin = 0.3F;
 
-// Searches bring the points this much farther than the nearest one as well, m. The first search of an
-// alignment does not: the first step is the largest and would use the margin up.
+// Searches also bring the target points up to this much farther than the nearest one, m. The first search of
+// an alignment brings none of them: the step after it is the largest and would use the margin up.
 constexpr float kNeighbourMargin = 0.02F;
 
-// Distances are rounded to float: a bound is believed only up to this share of the lengths in it.
+// Distances are rounded to float. Bounds are made smaller by this share of the lengths in them, so that
+// rounding cannot make a wrong answer.
 constexpr float kRounding = 1e-5F;
 
-// A point placed in float is off by at most this share of the distances that it is computed from: some ten
-// roundings of 6e-8 each.
+// The place of a point, computed in float, is off by at most this share of the distances that go into it:
+// some ten roundings of 6e-8 each.
 constexpr float kRoundingOfPlace = 1e-6F;
 
 // Points that find_awake() looks at together.
@@ -34,7 +35,7 @@ void CorrespondenceCache::Lanes::reset(std::size_t size) {
   alone.assign(size, -1.0F);
 }
 
-// Same float operations as the tree's own; equal distances go to the lowest index.
+// Same float operations as in the tree; of equal distances the lowest index wins, as there.
 CorrespondenceCache::Nearest CorrespondenceCache::nearest_of(const Neighbourhood& near, const Point& q) {
   std::array<float, Neighbourhood::kCapacity> squared;
   for (std::size_t i = 0; i < squared.size(); ++i) {
@@ -92,7 +93,7 @@ std::span<const Correspondence> CorrespondenceCache::find(const Pose& T_target_s
   return pairs_;
 }
 
-// Lists the points that have moved too far to be surely without a partner.
+// Fills awake_ with the points for which the last search does not prove that they have no partner.
 void CorrespondenceCache::find_awake(const Pose& T_target_source) {
   const Eigen::Matrix3f R = T_target_source.linear().cast<float>();
   const Eigen::Vector3f t = T_target_source.translation().cast<float>();
@@ -119,7 +120,8 @@ void CorrespondenceCache::find_awake(const Pose& T_target_source) {
   }
 }
 
-// Answers what can be answered from the last searches, lists the others in unknown_.
+// Finds the nearest target point of each awake point from its last search, if that proves it to be the
+// nearest. The other awake points go to unknown_.
 void CorrespondenceCache::look_up(const Pose& T_target_source) {
   const Eigen::Matrix3d R = T_target_source.linear();
   const Eigen::Vector3d t = T_target_source.translation();
@@ -143,7 +145,7 @@ void CorrespondenceCache::look_up(const Pose& T_target_source) {
     if (!known) {
       unknown_.push_back(static_cast<std::uint32_t>(a));
       queries_.push_back(q);
-      // The nearest one is at most as far away as the one known, which bounds the search from its start.
+      // The nearest point is at most as far away as the nearest known one: a bound for the search.
       const float bound = std::sqrt(nearest_[a].squared_distance) + kNeighbourMargin;
       radii_.push_back(std::min(bound, farthest));
     }

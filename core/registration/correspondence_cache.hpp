@@ -1,12 +1,15 @@
 // Which target point is nearest to each source point, while the source moves by ever smaller steps?
 //
-// The answers are those of a fresh search, bit for bit, but most are had without one. A search brings
-// the nearest few target points and a radius within which there are no others. When the source point has
-// moved by m since, all others are at least (radius - m) away (triangle inequality): if one of the few is
-// nearer than that, it is the nearest of all; and if (radius - m) reaches the gate, there is no other.
-// Clutter, which has no partner from the first search to the last, is passed over many points at a time.
-// Frames: source in its own, target in the tree's; metres. No failure; points that are not finite have no
-// partner. Thread rule: one owner; scratch memory is kept. Cost: 200 bytes a source point.
+// The answers are those of a fresh search, bit for bit, but most need none. The last search of a source point
+// brought the nearest few target points (the known ones) and a radius within which there are no others. Once
+// the source point has moved by a distance s, all others are at least (radius - s) away (triangle
+// inequality). So a known point that is nearer than that is the nearest of all. If no known point is, but
+// (radius - s) reaches the gate, the source point has no partner. Otherwise it is searched for again.
+// Source points far from the target stay without a partner for many steps. They are checked 64 at a time, for
+// speed.
+// Frames: source in its own, target in the tree's; metres. Cannot fail; points that are not finite have no
+// partner.
+// Thread rule: one owner; scratch memory is kept. Cost: 200 bytes a source point.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +28,7 @@ namespace hulltrack {
 struct Correspondence {
   Eigen::Vector3d source;  // in the target's frame, m
   Eigen::Vector3d target;  // m
-  double distance;         // m, as the search found it: in float
+  double distance;         // m, computed in float as the search does it
   std::uint32_t index;     // of the target point, in the cloud that the tree was made of
 };
 
@@ -34,7 +37,7 @@ class CorrespondenceCache {
   /// `gate`: the largest distance of partners (exclusive), m, > 0.
   explicit CorrespondenceCache(double gate) : gate_(static_cast<float>(gate)) {}
 
-  /// Starts anew. Both must outlive the calls of find().
+  /// Forgets all searches. `source` and `target` must outlive the calls of find().
   void reset(std::span<const Point> source, const KdTree& target);
 
   /// The pairs within the gate with the source at T_target_source (finite), in the order of the source.
@@ -47,11 +50,12 @@ class CorrespondenceCache {
  private:
   struct Nearest {
     float squared_distance = std::numeric_limits<float>::infinity();
-    std::uint32_t lane = 0;  // in the point's neighbourhood
+    std::uint32_t lane = 0;  // position in the point's Neighbourhood
   };
 
-  // Source points in lanes: where they are, where they were searched for, and how far from there they
-  // surely have no partner (m; negative: they may have one where they stand).
+  // Per source point, as separate vectors for vector instructions: its place in its own frame, its place in
+  // the target's frame at its last search, and how far it may move from there before it can get a partner, m
+  // (`alone`; negative: it may have one already).
   struct Lanes {
     std::vector<float> x, y, z, searched_x, searched_y, searched_z, alone;
 
@@ -71,17 +75,17 @@ class CorrespondenceCache {
   const KdTree* target_ = nullptr;
   std::size_t searches_ = 0;
 
-  std::vector<Neighbourhood> near_;      // per source point: what its last search brought
+  std::vector<Neighbourhood> near_;      // per source point: result of its last search
   Lanes lanes_;                          // per source point, filled up to whole blocks
-  float farthest_ = 0.0F;                // of the source points, from their origin, m
+  float farthest_ = 0.0F;                // largest distance of a source point from the source's origin, m
   std::vector<std::uint32_t> awake_;     // source points that may have a partner, in order
-  std::vector<Eigen::Vector3d> places_;  // per source point that is awake, in the target's frame
-  std::vector<Nearest> nearest_;         // likewise
-  std::vector<std::uint32_t> unknown_;   // those to be searched for, by their place in awake_
-  std::vector<Point> queries_;           // per unknown
-  std::vector<float> radii_;             // per unknown: how far to search, m
-  std::vector<Neighbourhood> answers_;   // per unknown
-  float margin_ = 0.0F;                  // of the searches of this round, m
+  std::vector<Eigen::Vector3d> places_;  // per awake point: its place in the target's frame
+  std::vector<Nearest> nearest_;         // per awake point: the nearest target point
+  std::vector<std::uint32_t> unknown_;   // awake points that need a search, as positions in awake_
+  std::vector<Point> queries_;           // per unknown point
+  std::vector<float> radii_;             // per unknown point: how far to search, m
+  std::vector<Neighbourhood> answers_;   // per unknown point
+  float margin_ = 0.0F;                  // searches also bring points this much beyond the nearest, m
   std::vector<Correspondence> pairs_;
 };
 

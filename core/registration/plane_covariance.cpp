@@ -42,17 +42,18 @@ void PlaneCovarianceEstimator::add(const PlaneSystem& system, std::uint32_t patc
 }
 
 PlaneCovariance PlaneCovarianceEstimator::estimate() const {
-  constexpr double kParameters = 6.0;  // the fit takes up as many patches
+  constexpr double kParameters = 6.0;  // each takes up one degree of freedom: n - 6 are left of n patches
   PlaneCovariance out;
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(A_.topLeftCorner<6, 6>()));
-  // The curvature is that of pairs within half a kernel: a fifth of them, and more.
+  // The robust cost curves less than a sum of squares: only pairs within about half a kernel add curvature.
+  // So a fifth of kFewestPairs is enough.
   if (touched_.size() < kFewestPatches || !(eigen.eigenvalues()[0] >= 0.2 * PlaneSystem::kFewestPairs)) {
     return out;
   }
   const Matrix6 A_inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
                             eigen.eigenvectors().transpose();
   const Twist by_bend = A_inverse * A_.topRightCorner<6, 1>();
-  Vector7 bend_alone;  // what is left of a sum for the bend when the pose has adapted
+  Vector7 bend_alone;  // times a sum of s: what is left for the bend once the pose has adapted
   bend_alone << -by_bend, 1.0;
   Matrix6 B_patches = Matrix6::Zero();
   double bend_spread = 0.0;

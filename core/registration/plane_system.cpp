@@ -5,7 +5,7 @@
 namespace hulltrack {
 namespace {
 
-/// x = H^-1 g along the directions that are held; returns how many are not.
+/// x = H^-1 g along H's eigenvectors with an eigenvalue of kFewestPairs or more; returns how many have less.
 template <int N>
 int solve_held(const Eigen::Matrix<double, N, N>& H, const Eigen::Matrix<double, N, 1>& g,
                Eigen::Matrix<double, N, 1>& x) {
@@ -29,7 +29,8 @@ PlaneSystem::Solution PlaneSystem::solve(double bend_off, double bend_worth) con
   if (!std::isfinite(bend_worth)) {
     return solve();
   }
-  // The bend eliminated: what is left speaks of the pose, with far parts of the ship worth less.
+  // The bend is eliminated (Schur complement). Parts of the ship far from the reference point then count less
+  // for the pose, because a bend can explain their residuals as well.
   const Matrix6 H_pp = H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>();
   const Twist h_pb = H_.topRightCorner<6, 1>();
   const double h_bb = H_(6, 6) + bend_worth;

@@ -9,14 +9,15 @@
 namespace hulltrack {
 namespace {
 
-// Kernels of the first rounds of a fine alignment, m; the last one stays. It is one and a half sigma of a
-// return's range: narrower costs efficiency, wider lets in what lies a few centimetres off.
+// Kernels of the first four rounds of align(), m; later rounds keep the last one. The last one is 1.5 times
+// the 1 sigma of a return's range. A narrower one would waste good pairs, a wider one would let in what lies
+// a few centimetres off the map.
 constexpr std::array<double, 4> kKernels = {0.20, 0.10, 0.05, 0.03};
 
-// Gates of an approach and how often each is searched with, m. At first the pairs may shift the hull but not
-// turn it: many are with wrong planes until the gate closes.
+// Stages of approach(). The first ones may shift the hull but not turn it: with a wide gate many pairs are
+// with wrong planes.
 struct Stage {
-  float gate;
+  float gate;  // m
   int rounds;
   bool turns;
 };
@@ -39,9 +40,9 @@ double kernel_of_round(int round) {
   return kKernels[std::min(static_cast<std::size_t>(round), kKernels.size() - 1)];
 }
 
-/// The pair's residual with its point at p, or nothing if p is beside the plane's part.
+/// Distance of p from the plane, and whether p is farther than `besides` from its centre across the normal.
 struct OnPlane {
-  double residual;
+  double residual;  // m, signed
   bool beside;
 };
 OnPlane on_plane(const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double besides) {
@@ -57,7 +58,8 @@ PointToPlaneIcp::PointToPlaneIcp(const PlaneIcpConfig& config, const BendShape& 
   assert(config.max_iterations >= 1 && shape.length > 0.0);
 }
 
-/// Calls visit(point, plane, residual against the bent plane, rise) for the pairs on their planes.
+/// Calls visit(point, plane, residual against the bent plane, rise) for all pairs but those beside their
+/// planes. The points are moved by at.T, the motion since the search.
 template <typename Visit>
 void PointToPlaneIcp::for_each_pair(std::span<const Correspondence> pairs, const PlaneMap& map,
                                     const Estimate& at, Visit&& visit) const {

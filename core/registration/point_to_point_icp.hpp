@@ -33,9 +33,9 @@ class PointToPointIcp {
 
   /// Moves `source` onto `target`, starting with T_init.
   ///
-  /// The size of an increment (|dT - I| of 2.3 f) is its angle and the displacement of the matched points'
-  /// centroid, so that "1 mm" speaks of the hull: the translation column of dT is that of the
-  /// world's origin, where 0.01 deg and a 100 m lever arm already make 17 mm.
+  /// The size of an increment (|dT - I| of 2.3 f) is its angle and the shift of the matched points' centroid:
+  /// an epsilon of 1 mm then means 1 mm of the hull. The translation column of dT is not used. It is the
+  /// shift of the frame's origin, where 0.01 deg and a lever arm of 100 m already make 17 mm.
   [[nodiscard]] IcpResult align(std::span<const Point> source, const KdTree& target, const Pose& T_init);
 
  private:

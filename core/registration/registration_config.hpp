@@ -6,8 +6,8 @@
 namespace hulltrack {
 
 enum class RegistrationMethod {
-  automatic,       // this version's best
-  point_to_point,  // the paper, 2.3
+  automatic,       // the best method of this version
+  point_to_point,  // the method of the paper (Guo 2025, 2.3)
 };
 
 /// Defaults: the paper's parameters (Guo 2025, 2.3).

@@ -5,8 +5,8 @@
 namespace hulltrack {
 namespace {
 
-// Pairs whose spread across their main direction is below this share of the spread along it count as a
-// line: 1e-10 of a variance is 1e-5 of a length, a millimetre in a hundred metres.
+// The points lie on a line, and a rotation is free, if the second singular value of their covariance is at
+// most this share of the first: 1e-10 of a variance is 1e-5 of a length, a millimetre in a hundred metres.
 constexpr double kLine = 1e-10;
 
 }  // namespace
@@ -27,7 +27,7 @@ std::optional<RigidMotion> RigidFit::solve() const {
   if (!(spread(1) > kLine * spread(0))) {
     return std::nullopt;
   }
-  // The last axis is turned over where the best orthogonal matrix would be a reflection.
+  // If the best orthogonal matrix is a mirror image, the last axis is reversed to make it a rotation.
   const double handedness = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d signs(1.0, 1.0, handedness);
   return RigidMotion{svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose(), mean_m - mean_p,

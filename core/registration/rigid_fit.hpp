@@ -1,9 +1,9 @@
 // Which rigid motion brings points closest to their partners? Least squares in closed form.
 //
-// Kabsch's solution by singular value decomposition (Umeyama 1991 without scale; Guo 2025, 2.3 d) from
-// sums that are collected pair by pair in double. Any frame, metres.
-// Sums are taken about an origin near the data, so that no digits are lost to far-away coordinates.
-// Failure: no motion for fewer than three pairs or pairs on one line, which leave a rotation free.
+// Kabsch's solution by singular value decomposition (Umeyama 1991 without scale; Guo 2025, 2.3 d), from sums
+// that are collected pair by pair in double. The sums are about an origin near the data, so that large
+// coordinates cost no digits. Any frame, metres.
+// Failure: no motion for fewer than three pairs, or for pairs on one line, which leave a rotation free.
 // Thread rule: a plain value. Cost: some 30 flops a pair, one 3 x 3 SVD.
 #pragma once
 
@@ -48,9 +48,9 @@ class RigidFit {
   /// The best motion, with the moving points' centroid as its centre; nothing if a rotation is free.
   [[nodiscard]] std::optional<RigidMotion> solve() const;
 
-  /// J^T J of the residuals `moving - fixed` against a twist [rotation; translation] that moves the
-  /// moving points about centroid(): rad and m, so that its inverse times the residuals' variance (m^2) is
-  /// the covariance of the motion as far as the residuals are independent. Precondition: pairs() > 0.
+  /// J^T J of the residuals `moving - fixed` for a twist [rotation; translation] of the moving points about
+  /// centroid(), rad and m. Its inverse times the residuals' variance (m^2) is the covariance of the motion,
+  /// if the residuals are independent. Precondition: pairs() > 0.
   [[nodiscard]] Matrix6 normal_matrix() const;
 
  private:

@@ -13,15 +13,17 @@ constexpr float kNone = std::numeric_limits<float>::infinity();
 static_assert(SphericalGrid::kColumns == 360 && SphericalGrid::kRows == 180);
 constexpr float kSineOfCell = 0.01745F;  // one degree
 
-/// Squared distance from a surfel to where the nearest ray meets its plane, m^2. Where none does within
-/// kSurfelRadius, as far as it is known to be flat, or in the cells around, this is how far off they are at
-/// least: rays of other cells are a degree away, in azimuth or in elevation.
+/// Squared distance from a surfel to where the nearest ray meets its plane, m^2. Only the rays of the
+/// surfel's cell and the eight around it are tried, and a ray counts only within kSurfelRadius, where the map
+/// is flat. If none counts, the answer is how far off all rays are at least: kSurfelRadius, or one degree of
+/// azimuth or elevation (rays of other cells) if that is less.
 float nearest_ray2(const ScanView& view, const Point& p_L, const Point& n_L) {
   const float plane = n_L.dot(p_L);
   float nearest2 = kNone;
   view.visit_around(SphericalGrid::cell(p_L), [&](const Point& returned) {
     const Point met = plane / n_L.dot(returned) * returned;
-    nearest2 = std::min(nearest2, (met - p_L).squaredNorm());  // not if it is parallel: no number
+    // Of a ray parallel to the plane this is infinity or NaN; against NaN min() keeps its first argument.
+    nearest2 = std::min(nearest2, (met - p_L).squaredNorm());
   });
   const float looked = std::min(kSurfelRadius, p_L.head<2>().norm() * kSineOfCell);
   return nearest2 <= kSurfelRadius * kSurfelRadius ? nearest2 : looked * looked;

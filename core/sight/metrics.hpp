@@ -14,7 +14,7 @@ namespace hulltrack {
 enum class MetricsScope {
   visible_subset,  // live: visible points of the fixed 0.4 m subset
   visible_full,    // every visible point
-  whole_map,       // the paper's literal definition: every map point, seen or not; no Q1 is expected
+  whole_map,       // the paper's literal definition: every map point, seen or not; without q1_expected
 };
 
 struct DistanceMetrics {
@@ -24,10 +24,11 @@ struct DistanceMetrics {
   double median = 0.0;       // m
   double q3 = 0.0;           // 75th percentile, m
   double rms = 0.0;          // m
-  std::uint32_t points = 0;  // map points that the figures stand on
+  std::uint32_t points = 0;  // map points that the figures are taken over
   /// What q1 should be at this pose, m (expected_distance.hpp); nothing where that cannot be told.
   std::optional<double> q1_expected = {};
-  /// It cannot be told because too few flat map points are in view within range: q1 says nothing of the pose.
+  /// q1_expected is missing because fewer than ExpectedDistance::kFewest flat map points are in view within
+  /// range: q1 then says nothing about the pose.
   bool few_surfels = false;
 };
 

@@ -11,22 +11,25 @@ namespace hulltrack {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kPerRadian = 180.0F / std::numbers::pi_v<float>;  // cells of SphericalGrid
+constexpr float kPerRadian = 180.0F / std::numbers::pi_v<float>;  // cells of SphericalGrid (1 deg)
 // Directions are known to 1e-5 rad, distances in L to 1e-5 m.
 constexpr float kRounding = 1e-4F;  // rad
-// A point's own cell is looked at first, then the cells as far around it as this; farther the tree is faster.
+// Squares of cells that are searched: this many cells to each side of the point's own. Beyond them a tree is
+// faster.
 constexpr std::array<int, 6> kAround = {0, 1, 2, 4, 8, 16};  // cells
-// A sparse LiDAR's lasers are 2 deg apart: where these many looks find nothing another LiDAR is asked first.
+// This many squares are searched in every LiDAR's view before the larger ones: a sparse LiDAR's lasers are 2
+// deg apart, and another LiDAR may have a return nearer.
 constexpr std::size_t kFirstLooks = 3;
 
 /// The nearest candidate for hull so far.
 struct Nearest {
   float squared = kInfinity;  // distance in L, m^2
   std::size_t lidar = 0;
-  std::uint32_t number = 0;  // of the LiDAR's returns
+  std::uint32_t number = 0;  // index into the LiDAR's returns
 };
 
-/// Cells of angle on either side of a point that hold whatever lies within a distance of it.
+/// How many rows and columns to either side of a point hold all that lies within a distance of it, in cells;
+/// infinite if the sensor itself or a pole lies within.
 struct Cap {
   float rows = std::numeric_limits<float>::infinity();
   float columns = std::numeric_limits<float>::infinity();
@@ -38,7 +41,7 @@ Cap cap_around(const Point& p_L, float squared) {
     return {};
   }
   const float angle = std::asin(sine) + kRounding;
-  // As wide as the cap is where it is widest; all around if it holds a pole.
+  // A circle of directions spans more columns than rows, the more the nearer it is to a pole.
   const float sine_across = std::sin(angle) * range / p_L.head<2>().norm();
   if (!(sine_across < 1.0F)) {
     return {};
@@ -46,14 +49,14 @@ Cap cap_around(const Point& p_L, float squared) {
   return {angle * kPerRadian, (std::asin(sine_across) + kRounding) * kPerRadian};
 }
 
-/// Looks around one point in one view.
+/// Searches the squares around one point in one LiDAR's view.
 class Search {
  public:
   Search(const ScanView& view, const std::vector<ReturnOf>& of, std::size_t lidar, const Point& p_W)
       : view_(view), of_(of), lidar_(lidar), p_L_(view.seen(p_W)), centre_(SphericalGrid::cell(p_L_)) {}
 
-  /// Takes the looks first .. last - 1 for candidates nearer than `nearest`. True if after them no other
-  /// can be nearer.
+  /// Searches the squares first .. last - 1 of kAround for candidates nearer than `nearest`. True as soon as
+  /// no return outside a searched square can be nearer.
   [[nodiscard]] bool look(std::size_t first, std::size_t last, Nearest& nearest) const {
     for (std::size_t i = first; i < last; ++i) {
       look_around(kAround[i], nearest);
@@ -65,7 +68,7 @@ class Search {
   }
 
  private:
-  /// A cell's own extent is left out: as if the point lay on its edge.
+  /// Takes the worst case, a point on the edge of its cell.
   [[nodiscard]] bool is_all_within(int around, const Nearest& nearest) const {
     if (nearest.squared == kInfinity) {
       return false;
@@ -109,7 +112,7 @@ class Search {
   SphericalGrid::Cell centre_;
 };
 
-/// The candidate nearest to p_W: or nothing if it takes a tree to tell.
+/// The candidate nearest to p_W in all views; nothing if the squares do not decide it and the tree has to.
 std::optional<Nearest> find_nearest(const Point& p_W, std::span<const ScanView> views,
                                     const FilteredScan& scan) {
   Nearest nearest;
@@ -126,7 +129,7 @@ std::optional<Nearest> find_nearest(const Point& p_W, std::span<const ScanView> 
   return nearest;
 }
 
-/// As the tree has it, to the bit.
+/// The same float operations as in the tree, so that both ways give the same bits.
 double distance_between(const Point& a, const Point& b) {
   const Point d = a - b;
   return std::sqrt(static_cast<double>((d.x() * d.x() + d.y() * d.y()) + d.z() * d.z()));

@@ -39,7 +39,7 @@ void ScanView::sort_by_cell() {
   }
   points_L_.resize(unsorted_L_.size());
   numbers_.resize(unsorted_L_.size());
-  for (std::size_t i = unsorted_L_.size(); i-- > 0;) {  // filled from the back: offsets end where cells begin
+  for (std::size_t i = unsorted_L_.size(); i-- > 0;) {  // offsets fall from the cells' ends to their begins
     const std::uint32_t at = --first_[cell_of_[i]];
     points_L_[at] = unsorted_L_[i];
     numbers_[at] = static_cast<std::uint32_t>(i);
@@ -73,7 +73,7 @@ void ScanView::find_fronts() {
   }
 }
 
-// First along the rows, which close upon themselves, then across them.
+// The least of three neighbours along each row, which closes upon itself, then of three rows.
 void ScanView::spread_fronts() {
   constexpr std::size_t kWidth = SphericalGrid::kColumns;
   front_beside_.resize(SphericalGrid::kCells);

@@ -1,12 +1,15 @@
-// What one LiDAR really saw in a scan, sorted by direction from its mid-scan pose.
+// What one LiDAR really saw in a scan: its returns, sorted by direction into SphericalGrid's cells of 1 deg.
 //
-// Frame L of the LiDAR at the middle of the scan, metres; cells of SphericalGrid. It answers three
-// questions: which returns lie near a direction, does something hide what lies there, and does the sensor
-// look there at all. What hides is what half of the returns of a cell show: a drop of rain before a deck is
-// one return of several, a chute is all of them. The field of view is learned: from the lowest to the highest
-// row (its lasers may be more than a cell apart) and every column in which this LiDAR has ever had a return;
-// it only grows, so that a sight that went empty (the ship left, packets were lost) still counts as looked
-// at. Thread rule: one owner. Cost: one pass over the returns, no allocation in steady state.
+//   returns()   which returns lie in a direction?
+//   hidden()    does something hide a point there? A cell's front is the median range of its returns. A chute
+//               takes all returns of a cell and hides what lies behind it; a raindrop before a deck takes one
+//               of several and hides nothing.
+//   looks_at()  does the sensor look there at all? Its field of view is learned and only grows: all rows from
+//               the lowest to the highest with a return so far (lasers may be more than a cell apart), and
+//               every column with a return so far. So a direction that has gone empty (the ship left, packets
+//               were lost) still counts as looked at.
+// Frame L of the LiDAR at the middle of the scan, metres. Thread rule: one owner. Cost: one pass over the
+// returns, no allocation in steady state.
 #pragma once
 
 #include <bitset>
@@ -32,7 +35,7 @@ class ScanView {
     return std::span(points_L_).subspan(first_[i], first_[i + 1] - first_[i]);
   }
 
-  /// The returns of columns first .. last (first <= last < kColumns) of a row, and where each of them stands
+  /// The returns in columns first .. last (first <= last < kColumns) of a row, and the index of each of them
   /// in `returns_W` of rebuild().
   struct Returns {
     std::span<const Point> points_L;
@@ -47,7 +50,7 @@ class ScanView {
   /// A point of W in L.
   [[nodiscard]] Point seen(const Point& p_W) const { return R_L_W_ * p_W + t_L_W_; }
 
-  /// Calls visit(return in L) for those in a cell and the eight around it.
+  /// Calls visit(return in L) for the returns in a cell and in the eight around it.
   template <typename Visit>
   void visit_around(SphericalGrid::Cell cell, Visit&& visit) const {
     for (int dr = -1; dr <= 1; ++dr) {
@@ -64,14 +67,14 @@ class ScanView {
            columns_seen_[static_cast<std::size_t>(cell.column)];
   }
 
-  /// The rows that looks_at() says yes to; none before the first return: then the lowest is above the
-  /// highest.
+  /// The lowest and the highest row with a return so far; lowest > highest before the first return.
   [[nodiscard]] int lowest_row() const { return lowest_row_; }
   [[nodiscard]] int highest_row() const { return highest_row_; }
 
-  /// True if a point at `range` in this cell is behind most of what the scan saw: by kBehind in the cell
-  /// itself, or by kFarBehind in a neighbouring one (beams are sparser than cells; a chute is nearer by
-  /// metres, while a deck seen at a low angle changes its range by decimetres from cell to cell).
+  /// True if a point at `range` (m) in this cell lies behind what was seen: by more than kBehind behind the
+  /// cell's own front, or by more than kFarBehind behind the front of one of the eight cells around. Those
+  /// count because beams are sparser than cells. Their limit is wider because a deck seen at a low angle
+  /// changes its range by decimetres from cell to cell; a chute is nearer by metres.
   [[nodiscard]] bool hidden(SphericalGrid::Cell cell, float range) const {
     return front_[cell.index()] < range - kBehind || front_around_[cell.index()] < range - kFarBehind;
   }
@@ -91,12 +94,12 @@ class ScanView {
   std::vector<Point> unsorted_L_;
   std::vector<std::uint32_t> cell_of_;
   std::vector<Point> points_L_;         // by cell
-  std::vector<std::uint32_t> numbers_;  // likewise: of the returns given
+  std::vector<std::uint32_t> numbers_;  // by cell: index in `returns_W`
   std::vector<std::uint32_t> first_;    // kCells + 1 offsets into points_L_
   std::vector<float> front_;            // per cell: median range of its returns, m; infinity without a return
-  std::vector<float> front_beside_;     // the least of a cell and its two neighbours in the row
-  std::vector<float> front_around_;     // the least of a cell and its eight neighbours
-  std::vector<float> ranges2_;          // of one cell, squared
+  std::vector<float> front_beside_;     // least front of a cell and its two neighbours in the row
+  std::vector<float> front_around_;     // least front of a cell and its eight neighbours
+  std::vector<float> ranges2_;          // of one cell's returns, squared
   int lowest_row_ = SphericalGrid::kRows;
   int highest_row_ = -1;
   std::bitset<SphericalGrid::kColumns> columns_seen_;

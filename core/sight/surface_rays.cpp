@@ -11,7 +11,8 @@ namespace {
 using namespace surface_rays;
 
 constexpr float kAround = 0.2F;  // m in the plane: half a subset voxel; returns in it are the surfel's own
-// Returns of one surfel share the map's error there (5 mm) beside their own (20 mm).
+// Variance of the error that returns of one surfel share, in units of a return's own: the map's error there
+// is 5 mm, a return's 20 mm, and (5 / 20)^2 = 1 / 16.
 constexpr float kSharedError = 1.0F / 16.0F;
 
 }  // namespace
@@ -28,7 +29,7 @@ void collect_rays(const ScanView& view, const Point& p_L, const Point& n_L, std:
     const float t = plane / along;  // the plane is met at t * s
     const float besides2 = (t * s - p_L).squaredNorm();
     const float depth = (1.0F - t) * range;
-    const bool stopped = depth < -kBehind;  // before it, by a drop of rain say: it says nothing
+    const bool stopped = depth < -kBehind;  // by a raindrop, say: it tells nothing of the plane
     if (besides2 < kSurfelRadius * kSurfelRadius && !stopped) {
       rays.push_back({besides2, along - plane, depth});
     }

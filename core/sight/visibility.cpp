@@ -12,7 +12,8 @@ constexpr float kDegree = std::numbers::pi_v<float> / 180.0F;
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 constexpr float kFrontMost = 0.4F;  // m (ICD 3)
-// A voxel's representative hides a disc as wide as the voxel; no more cells than this at point-blank range.
+// An occluder covers as many cells as its voxel spans, but at point-blank range no more than this to each
+// side.
 constexpr int kLargestSplat = 5;
 
 }  // namespace
@@ -32,7 +33,8 @@ void Visibility::run(const HullMap& map, std::span<const Point> candidates_H, co
     const Pose T_L_H = view.T_W_L().inverse() * T_W_H;
     const auto min_range = static_cast<float>(sensors[lidar].min_range);
     const auto range = static_cast<float>(std::min(sensors[lidar].max_range, farthest_));
-    // An occluder reaches kLargestSplat rows beyond its own.
+    // Rows just outside the field of view count too: an occluder covers up to kLargestSplat rows beyond its
+    // own.
     render(map.occluders_H(), T_L_H,
            {range, view.lowest_row() - kLargestSplat, view.highest_row() + kLargestSplat});
     sight(candidates_H, T_L_H, [&](std::size_t candidate, const Sightings& from_L, std::size_t i) {
@@ -68,7 +70,8 @@ void Visibility::render(const PointBlocks& occluders_H, const Pose& T_L_H, const
     float& nearest2 = cell_nearest_[from_L.cell[i]];
     nearest2 = std::min(nearest2, from_L.range2[i] <= range2 ? from_L.range2[i] : kNothing);
   });
-  // The nearest occluder of a cell covers the most: the others behind it hide nothing besides.
+  // Only the nearest occluder of a cell is spread over its neighbours: it covers the most cells, and those
+  // behind it hide nothing that it does not hide.
   map_nearest_.assign(SphericalGrid::kCells, kNothing);
   const int lowest = std::max(limits.lowest_row, 0);
   const int highest = std::min(limits.highest_row, SphericalGrid::kRows - 1);

@@ -1,10 +1,13 @@
-// Which map points can this scan be expected to see, if the hull is where the pose says? (ICD 3)
+// Which map points should this scan see if the hull lies where the pose says? (ICD 3)
 //
-// A point is visible to a LiDAR if, seen from its mid-scan pose, it lies in a direction that the LiDAR looks
-// at, between min_range and the nearer of max_range and `farthest`; if it is front-most in a range image of
-// the map (cells of 1 deg, 0.4 m tolerance); and if the scan has no nearer return there. Seen by one LiDAR is
-// enough. Frames: map in H, result in L of the LiDAR that sees it; metres. Thread rule: one owner, scratch is
-// kept. Cost: a few ns a map occluder and candidate.
+// A point is visible if, seen from the mid-scan pose of at least one LiDAR, all of this holds:
+//   - the LiDAR looks in its direction (ScanView::looks_at);
+//   - its range is at least min_range, and at most the lesser of max_range and `farthest`;
+//   - it is front-most in a range image of the map (cells of 1 deg, 0.4 m tolerance);
+//   - the scan has no nearer return in its direction (ScanView::hidden).
+// Frames: map in H, result in L of the LiDAR that sees the point; metres. Thread rule: one owner, scratch is
+// kept. Cost: a few ns a map occluder and candidate. An occluder is a point of the thinned map that hides
+// what lies behind it.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +31,7 @@ void keep_within(double range, std::vector<VisiblePoint>& visible);
 
 class Visibility {
  public:
-  /// `farthest`: m from the sensor.
+  /// `farthest`: largest range of a visible point, m.
   explicit Visibility(double farthest) : farthest_(farthest) {}
 
   /// `candidates_H`: map points to judge. `views` and `sensors`: one a LiDAR. `out` is replaced, in order of
@@ -42,9 +45,9 @@ class Visibility {
   void splat(SphericalGrid::Cell cell, float r);
 
   double farthest_;
-  std::vector<float> cell_nearest_;   // per cell: of the occluders in it, squared, m^2
-  std::vector<float> map_nearest_;    // per cell that the LiDAR looks at: of the occluders that cover it, m
-  std::vector<std::uint32_t> place_;  // per candidate: in the result, if an earlier LiDAR sees it
+  std::vector<float> cell_nearest_;   // per cell: squared range of the nearest occluder in it, m^2
+  std::vector<float> map_nearest_;    // per cell: range of the nearest occluder that covers it, m
+  std::vector<std::uint32_t> place_;  // per candidate: index in the result, if an earlier LiDAR sees it
 };
 
 }  // namespace hulltrack

@@ -9,17 +9,20 @@
 namespace hulltrack {
 namespace {
 
-// Two poses are each off by less than 5 cm. A hull that moves no faster than kFastestHull can show this much
-// beyond kFastestHull * dt before a jump is no longer explained by errors.
+// A pose may lie kFastestHull * dt + kJumpNoise from the last accepted one; farther is a jump. kJumpNoise is
+// the error of the two poses: a healthy one is off by less than 5 cm.
 constexpr double kJumpNoise = 0.10;  // m
-const double kTurnNoise = radians(0.3);
-// A moored ship rolls by a degree in a quarter of 8 s.
-const double kTurnRate = radians(1.0);  // 1/s
-// Three sigma of MotionRecord's rate of yaw, each yaw with 0.016 deg of noise of its own. In 50,000 simulated
-// healthy frames it was off by more in one, by 0.1003.
-const double kYawRateNoise = radians(0.1);  // 1/s
+// The attitude may change by kTurnRate * dt + kTurnNoise, the second for the error of the two poses. A moored
+// ship that rolls by 1 deg in a quarter of a period of 8 s turns by 0.8 deg/s at most.
+const double kTurnNoise = radians(0.3);  // rad
+const double kTurnRate = radians(1.0);   // rad/s
+// Noise of the measured rate of yaw; it is taken off before the hull's ends count as too fast. Three sigma of
+// MotionRecord's rate if each yaw has 0.016 deg of noise. In 50,000 simulated healthy frames the rate was off
+// by more only once, by 0.1003 deg/s.
+const double kYawRateNoise = radians(0.1);  // rad/s
 
-/// What the checks found: the worst state they leave, all fault bits, the first reason of the worst.
+/// Collects findings: the worst state, all fault bits, and the reason of the first check that gave that
+/// state.
 struct Findings {
   State state = State::tracking;
   Faults faults = 0;
@@ -45,9 +48,9 @@ void check_registration(const HealthLimits& limits, const Evidence& e, Findings&
   }
 }
 
-/// Q1 against what this sensor should see at this pose. With few surfels within metric_range it is no
-/// witness, neither for nor against: integrity is, which looks farther and takes health away where it has few
-/// as well.
+/// Compares Q1 with what this sensor should see at this pose. If few surfels within metric_range leave that
+/// unknown, the check is skipped: integrity looks farther, and it objects itself if it has few surfels. If it
+/// is unknown for another reason, the frame is degraded unless the site has set q1_healthy.
 void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Findings& findings) {
   if (!metrics.q1_expected) {
     if (!metrics.few_surfels && !health.q1_healthy) {
@@ -69,7 +72,7 @@ void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Fin
   check(State::degraded, health.q1_ratio_healthy, "q1_ratio_healthy");
 }
 
-/// Q1 against the limits that a site sets.
+/// Compares Q1 with the limits that a site sets.
 void check_q1(const HealthConfig& health, double q1, Findings& findings) {
   const auto check = [&](State at_best, const std::optional<double>& limit, const char* name) {
     if (limit && !(q1 <= *limit)) {
@@ -96,7 +99,8 @@ void check_integrity(const Evidence& e, Findings& findings) {
   }
 }
 
-/// The quay's word on the machine. It also tells a hull that really ran from one that only seemed to.
+/// A frame is degraded while the witnesses (the quay, or the hull's motion with a joint) contradict the
+/// machine. A frame in which a quay map confirms all joints ends a run: no joint is wrong then.
 void check_machine(HealthMemory& memory, const Evidence& e, Findings& findings) {
   if (e.machine.faults != 0) {
     findings.add(State::degraded, e.machine.faults, e.machine.reason);
@@ -118,8 +122,8 @@ void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& fin
   }
 }
 
-/// No ship lies at a quay heeled, trimmed or turned like this: it is a machine whose slew, luff or mount is
-/// not what the configuration says, or an alignment that went wrong.
+/// Lost if roll, pitch or yaw of T_W_H is beyond max_heel, max_trim or max_yaw. No moored ship lies like
+/// that: slew, luff or a mount is not what the configuration says, or the alignment went wrong.
 void check_attitude(const HealthLimits& limits, const Evidence& e, Findings& findings) {
   static constexpr std::array<std::pair<const char*, const char*>, 3> kWords = {
       {{"heel", "max_heel"}, {"be trimmed", "max_trim"}, {"be turned", "max_yaw"}}};
@@ -135,7 +139,8 @@ void check_attitude(const HealthLimits& limits, const Evidence& e, Findings& fin
   }
 }
 
-/// Does the pose follow from the one before? Ends `unique` when the hull was out of sight for too long.
+/// Compares the pose with the last accepted one. If the hull could have moved by kUnseen since then, that
+/// pose is forgotten and `unique` ends. If the hull moved or turned more than a moored one can: degraded.
 void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
   if (!memory.track.followed) {
     return;
@@ -149,7 +154,7 @@ void check_continuity(HealthMemory& memory, const Evidence& e, Findings& finding
     return;
   }
   const double jump = (e.displacement - memory.track.followed->displacement).norm();
-  if (!memory.track.unique && jump > reach) {  // the search found a better place
+  if (!memory.track.unique && jump > reach) {  // the search found another place: no fault, no speed
     memory.track.motion = MotionRecord{};
     return;
   }
@@ -164,7 +169,8 @@ void check_continuity(HealthMemory& memory, const Evidence& e, Findings& finding
   }
 }
 
-/// Of the fastest part of the hull beyond what noise explains, m/s; with words for it. Nothing while slow.
+/// A part of the hull that is faster than max_speed: its speed, m/s, and words for the log. The reference
+/// point is judged first, then the hull's ends by the rate of yaw less its noise. Nothing if both are slow.
 struct FastPart {
   double speed;
   std::string words;
@@ -185,7 +191,8 @@ std::optional<FastPart> fast_part(const HealthLimits& limits, const MotionRecord
   return std::nullopt;
 }
 
-/// The run goes on over a pause as long as the record in which a speed is sought, since noise makes gaps.
+/// Adds speed times the time since the last fast frame to the run. A pause of up to MotionRecord::kWindow
+/// does not end a run, because noise makes a fast hull look slow for some frames.
 void note_run(HealthMemory& memory, MeasurementTime time, double speed) {
   if (!memory.run || time - memory.run->last > MotionRecord::kWindow) {
     memory.run = {0.0, time};
@@ -212,7 +219,8 @@ void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTi
   }
 }
 
-/// Ends the search when all of the berth was searched and one place is left.
+/// While the place is not certain: degraded until all starts of the search are tried, then lost if another
+/// place explains the scan as well. If none does and no check objects, the place is certain (`unique`).
 void check_uniqueness(HealthMemory& memory, const SearchEvidence& search, Findings& findings) {
   if (memory.track.unique) {
     return;
@@ -260,14 +268,14 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
     findings.add(State::degraded, 0, e.integrity.reason);
   }
   check_uniqueness(memory, e.search, findings);
-  if (e.joints_on_trial) {  // good frames count: once the values are believed, these had the right ones too
+  if (e.joints_on_trial) {  // still a good frame: health is back at once when the values prove right
     findings.add(State::degraded, fault::plc_value, e.joint_trouble);
   }
   if ((e.standing & fault::foreign_packets) != 0) {
     findings.add(State::degraded, fault::foreign_packets,
                  "two sensors send to one LiDAR's port and nobody can say which is meant; set `source`");
   }
-  if (a_lidar_is_silent) {  // what the others see may well follow the hull, but not steer by
+  if (a_lidar_is_silent) {  // the others still follow the hull, but nobody may steer by that
     findings.add(State::degraded, fault::lidar_silent, "a LiDAR is silent");
   }
   if (findings.state == State::tracking && memory.state != State::tracking &&

@@ -1,24 +1,23 @@
-// May anybody believe this frame's pose? The state machine, as a pure function.
+// The state machine of a frame: may anybody believe this frame's pose? judge_health() is a pure function.
 //
-// (configuration, memory of earlier frames, evidence of this frame) -> (memory, verdict). No check can give
-// health: it is what is left when none takes it away, recover_frames times in a row.
+// Input: the limits, the memory of earlier frames, the evidence of this frame (its pose and what checks
+// found). Output: the memory for the next frame, and the verdict: a state, fault bits and the reason in
+// words. Every frame begins as tracking; each check can only make that worse. Only tracking is health 1.
 //   held       the PLC does not want tracking
-//   fault      no joints bracket the scan, or PLC data stale: nothing was registered
-//   tracking   every check passed, now and (unless tracking already) in recover_frames frames in a row
+//   fault      PLC data is stale or no joint samples bracket the scan: nothing was registered
+//   tracking   no check objects; after another state, not before recover_frames frames in a row
 //   degraded   a pose, but: Q1 above its limit for tracking, not converged, not constrained, a jump or a
 //              speed that a moored hull does not have, a machine that its witnesses contradict, joint values
-//              on trial, a LiDAR silent or disputed, or recovering
+//              on trial, a LiDAR silent or disputed, too early to say which ship it is, or recovering
 //   lost       no pose to trust: none found, too few matches, Q1 above its limit for lost, contradicted by
-//   the
-//              scan, outside hull.envelope, tilted or turned beyond hull.max_heel, max_trim or max_yaw, or of
-//              a hull that ran away
-//   acquiring  instead of degraded and lost while the hull has to be searched for
-// A scan may look the same one hatch farther along the quay, so a pose is believed only if it follows from an
-// earlier one without a gap in which the hull could have moved by kUnseen, or if the whole berth was searched
-// since and no other place explains the scan as well. A hull that ran away (kLongestRun) is not believed
-// again before a person has looked, a re-acquire edge, or a map of the quay has confirmed all joints. Metres,
-// radians. The pose's age is the publisher's
-// business.
+//              the scan, outside hull.envelope, tilted or turned beyond hull.max_heel, max_trim or max_yaw,
+//              or of a hull that ran away
+//   acquiring  instead of degraded and lost while the hull has to be searched for (Track::unique is false)
+// A scan may look the same one hatch farther along the quay. So health needs Track::unique: the whole berth
+// was searched and no other place explains the scan as well. It ends when the last accepted pose is so old
+// that the hull could have moved by kUnseen since.
+// A hull that ran away (kLongestRun) stays lost until a re-acquire edge says that a person has looked, or
+// until a map of the quay confirms all joints. Metres, radians. The publisher judges the pose's age.
 #pragma once
 
 #include <optional>
@@ -39,12 +38,12 @@ namespace hulltrack {
 struct Evidence {
   MeasurementTime time{};  // middle of the scan
   bool hold = false;
-  bool reacquire = false;  // rising edge
-  Faults standing = 0;     // plc_stale, plc_value, lidar_silent, clock; foreign_packets: a disputed sensor
-  bool bracketed = false;  // joint samples bracket every packet
-  bool joints_on_trial = false;  // samples among them that nothing confirms yet
+  bool reacquire = false;        // rising edge
+  Faults standing = 0;           // faults of the inputs that hold now, as in FrameInputs (hull_tracker.hpp)
+  bool bracketed = false;        // joint samples lie before and after every packet
+  bool joints_on_trial = false;  // some of these samples are not confirmed yet
   std::string joint_trouble;     // why joint values are refused or on trial
-  bool registered = false;       // a pose was found; what follows speaks of it
+  bool registered = false;       // a pose was found; metrics, displacement, rotation, integrity are about it
   bool converged = false;
   std::uint32_t matched = 0;
   std::string trouble;  // of the registration: why there is no pose, or why it did not converge
@@ -56,22 +55,22 @@ struct Evidence {
   SearchEvidence search;
 };
 
-/// The longest way on which a moored hull is faster than hull.max_speed: all of the fastest jerk that a
-/// passing ship gives her. One that runs farther is under way, or an encoder stands still while the loader
-/// moves, and nobody can tell which.
+/// A hull that runs farther than this while faster than hull.max_speed has run away. The fastest jerk that a
+/// passing ship gives a moored hull does not reach as far. So the hull is under way, or an encoder stands
+/// still while the loader moves; the two look the same.
 inline constexpr double kLongestRun = 1.0;  // m
 
 struct HealthMemory {
-  /// How far some part of the hull has run faster than max_speed, without a pause.
+  /// How far some part of the hull has run faster than max_speed. A pause of up to 1.5 s does not end a run.
   struct FastRun {
     double length;  // m
     MeasurementTime last;
   };
   State state = State::starting;
   Track track;
-  int good_frames = 0;  // in a row
+  int good_frames = 0;  // frames in a row without objection, counted for recover_frames
   std::optional<FastRun> run;
-  bool ran_away = false;  // farther than kLongestRun, until a re-acquire edge or a quay map's word
+  bool ran_away = false;  // farther than kLongestRun; ends as told in the file's head
 };
 
 struct HealthVerdict {
@@ -83,9 +82,9 @@ struct HealthVerdict {
 struct HealthLimits {
   HealthConfig health;
   Eigen::Vector3d envelope_min, envelope_max;  // displacement, m
-  Eigen::Vector3d max_rpy;                     // heel, trim and yaw about the map's attitude, rad
+  Eigen::Vector3d max_rpy;                     // of roll, pitch, yaw of T_W_H (heel, trim, yaw), rad
   double max_speed = 0.3;                      // m/s, of any part of the hull
-  double half_length = 0.0;                    // of the hull as far as it is mapped, level, m
+  double half_length = 0.0;                    // half of the mapped hull's longer horizontal side, m
 };
 
 /// The limits that a configuration and the size of the map set.

@@ -19,20 +19,20 @@
 namespace hulltrack {
 namespace {
 
-/// 1-sigma along the largest principal axis of the pose's error as the scan sees it: how uncertain the
-/// plane step is, and the step itself, which was not taken.
+/// 1-sigma along the largest principal axis of covariance + step * step^T. `step` is the correction that the
+/// scan asks for; it is not applied, so it counts as error.
 double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) {
   return largest_sigma(covariance + step * step.transpose());
 }
 
-/// Half of the map's length, level, m.
+/// Half of the longer horizontal side of the map's box, m: the lever of the hull's ends when she turns.
 double half_length(const HullMap* map) {
   assert(map != nullptr);
   const Box box = bounding_box(map->cloud_H());
   return static_cast<double>((box.max - box.min).head<2>().maxCoeff()) / 2.0;
 }
 
-/// Where the hull may lie, W.
+/// Where the hull may lie, W: the map's box, widened by the displacements of hull.envelope.
 Box berth_of(const HullMap& map, const HullConfig& hull) {
   const Box box = bounding_box(map.cloud_H());
   return {box.min + hull.envelope.min, box.max + hull.envelope.max};
@@ -58,9 +58,9 @@ struct HullTracker::Impl {
   FilteredScan filtered;
   std::vector<ScanView> views;
   std::vector<VisiblePoint> visible;
-  Cloud measured_W;  // the metrics' map points, and how far the nearest return is from each
+  Cloud measured_W;  // the metrics' map points
   NearestReturns nearest_returns;
-  std::vector<double> distances;
+  std::vector<double> distances;  // from each of measured_W to its nearest return, m
 
   Impl(const TrackerConfig& c, const MachineConfig& machine, std::vector<SensorConfig> sensors,
        std::shared_ptr<const HullMap> m, std::shared_ptr<const QuayMap> quay)
@@ -163,7 +163,7 @@ PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult&
   return answer;
 }
 
-/// The hull's motion as its last poses have it, about the reference point.
+/// Speed and rate of turn of the hull about its reference point, by its last poses; zero if unknown.
 HullDrift HullTracker::Impl::drift() const {
   const auto slope = memory.track.motion.motion();
   if (!slope || !memory.track.followed) {
@@ -173,7 +173,8 @@ HullDrift HullTracker::Impl::drift() const {
           slope->rpy_rate};
 }
 
-/// A point to plane fit asks for no further step; its own covariance says how sure it is.
+/// The step of a point-to-plane fit: zero, since nothing is left to correct, with the covariance of the fit
+/// and of the joints. solved is false if the fit's covariance is not valid or a direction is free.
 PlaneStep HullTracker::Impl::certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
                                           TrackResult& result) const {
   PlaneStep step;
@@ -196,10 +197,11 @@ std::uint32_t HullTracker::Impl::examine(const PlaneIcpResult& found, const Join
   result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
   IntegrityReport report = inspect(result.T_W_H);
-  keep_within(config.health.metric_range, visible);  // integrity looks farther than distances are taken
+  // The checks of inspect() look as far as Integrity::kSight; distances (Q1) are taken up to metric_range.
+  keep_within(config.health.metric_range, visible);
   std::optional<double> q1_expected;
   bool few_surfels = false;
-  if (config.metrics_scope != MetricsScope::whole_map) {  // it speaks of what is in view
+  if (config.metrics_scope != MetricsScope::whole_map) {  // the expected Q1 is of visible points
     q1_expected = expected_distance.q1(*map, visible, result.T_W_H, views);
     few_surfels = expected_distance.had_few_surfels();
   }
@@ -225,13 +227,14 @@ std::uint32_t HullTracker::Impl::examine(const PlaneIcpResult& found, const Join
   return report.confirmed;
 }
 
-/// The scan against the map at T_W_H.
+/// Finds what should be visible at T_W_H (`visible` is replaced) and asks the scan's rays about each point.
 IntegrityReport HullTracker::Impl::inspect(const Pose& T_W_H) {
   visibility.run(*map, map->probes_H(), T_W_H, views, scan_filter.sensors(), visible);
   return integrity.run(*map, visible, T_W_H, views);
 }
 
-/// Does another place explain the scan as well? One is examined a frame.
+/// Does another place explain the scan as well? The frame's pose is reported to the search as right or
+/// contradicted. Then at most one other place is aligned, checked in the same way and reported.
 void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result, std::uint32_t confirmed) {
   const Pose T_H_W = result.T_W_H.inverse();
   if (result.registered) {
@@ -254,7 +257,8 @@ void HullTracker::Impl::look(const Joints& joints_mid) {
   }
 }
 
-/// What the hull's motion says of the joints counts where no quay map has the better word.
+/// Learns whether the hull seems to move with a joint. That contradicts the machine only if the quay has
+/// neither contradicted nor confirmed it in this frame.
 void HullTracker::Impl::follow_joints(const MachineStand& standing, const TrackResult& result,
                                       MachineFinding& finding) {
   joint_motion.add(result.time, standing, config.hull.reference_point + result.displacement,
@@ -265,14 +269,15 @@ void HullTracker::Impl::follow_joints(const MachineStand& standing, const TrackR
   }
 }
 
-/// After look(). `joints` must answer at `time`.
+/// Joints, their rates and the mean position of the LiDARs at `time`. Call after look(); `joints` must have
+/// an answer at `time`.
 MachineStand HullTracker::Impl::stand(const JointHistory& joints, MeasurementTime time) const {
   MachineStand stand;
   if (const auto moving = joints.motion_at(time)) {
     stand.joints = moving->joints;
     stand.rate = moving->rate;
   } else {
-    stand.joints = joints.at(time).joints;  // a single sample
+    stand.joints = joints.at(time).joints;  // a single sample: rates are zero
   }
   for (const ScanView& view : views) {
     stand.sensor_W += view.T_W_L().translation() / static_cast<double>(views.size());
@@ -295,7 +300,7 @@ DistanceMetrics HullTracker::Impl::measure(const Pose& T_W_H) {
     }
     const Cloud& candidates_H = full ? map->cloud_H() : map->subset_H();
     for (const VisiblePoint& point : visible) {
-      if (point.index < candidates_H.size()) {  // behind the subset come the rims
+      if (point.index < candidates_H.size()) {  // the rest are rim points
         add(candidates_H[point.index]);
       }
     }

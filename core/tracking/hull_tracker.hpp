@@ -1,8 +1,8 @@
 // One scan in, one TrackResult out: where is the hull, and may anybody believe it?
 //
-// Frames: scans in L, joints -> W, map in H; the answer is T_W_H. The pose is that of the middle of
-// the scan. Asks no clock and does no I/O; the same calls in the same order give the same bits.
-// Thread rule: one owner. Cost: bounded by the scan's points (core/README.md).
+// Input: a scan (points in L), joint samples (they place the LiDARs in W), the ship's map (H). Output: T_W_H
+// at the middle of the scan. Asks no clock and does no I/O; the same calls in the same order give the same
+// bits. Thread rule: one owner. Cost: bounded by the scan's points (core/README.md).
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ namespace hulltrack {
 struct FrameInputs {
   bool hold = false;       // the PLC's command word: no tracking wanted
   bool reacquire = false;  // rising edge since the previous frame
-  /// What stands against the inputs: plc_stale, plc_value, lidar_silent, clock; foreign_packets: disputed
-  /// sensor.
+  /// Faults of the inputs that hold now: plc_stale, plc_value, lidar_silent, clock; foreign_packets means
+  /// here that two sensors send to one LiDAR's port.
   Faults standing = 0;
-  std::string joint_trouble{};  // why joint values are refused or on trial, for the reason; "" if none are
+  std::string joint_trouble{};  // why joint values are refused or on trial; "" if none are
 };
 
 /// What one frame came to, healthy or not.
@@ -41,7 +41,7 @@ struct TrackResult {
   std::uint32_t frame = 0;
   MeasurementTime time{};  // middle of the scan
 
-  bool registered = false;                                 // everything below up to `metrics` is meaningful
+  bool registered = false;                                 // false: members down to `metrics` mean nothing
   Pose T_W_H = Pose::Identity();                           // hull pose found by this frame's registration
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // T_W_H * p_ref - p_ref, m
   Eigen::Vector3d rpy = Eigen::Vector3d::Zero();           // of T_W_H, rad
@@ -50,24 +50,24 @@ struct TrackResult {
   std::uint32_t matched = 0;        // points of the last ICP iteration
   double sigma_translation = -1.0;  // 1-sigma, largest principal axis, m; -1 = unknown
   double sigma_rotation = -1.0;     // rad; -1 = unknown
-  /// Of the pose's error at the reference point, [rotation; translation], W, rad and m; meaningful when
-  /// sigma_translation >= 0.
+  /// Covariance of the pose's error at the reference point, [rotation; translation], W, rad and m. Zero if
+  /// sigma_translation is unknown or the registration method is not `automatic`.
   Matrix6 covariance = Matrix6::Zero();
   double bend = 0.0;         // m, sag (+) or hog (-) of amidships against the ends since the map was made
   double sigma_bend = -1.0;  // m; -1 = unknown
   DistanceMetrics metrics;   // metrics.valid tells whether there are any
 
-  State state = State::starting;  // starting/held/fault as far as the frame's inputs tell
+  State state = State::starting;  // of this frame alone; the publisher judges its age and later silence
   bool health = false;            // true if and only if state == tracking
   Faults faults = 0;
   std::string reason;  // why health is 0, in plain words with figures; empty when healthy
 
-  /// The scan itself shows that the joints are right on all six axes of the LiDAR's pose in W, by what stands
-  /// still on the quay.
+  /// True if the returns on the quay's map confirm all six axes of the LiDAR's pose in W, and the view would
+  /// have shown a large error of each joint.
   bool joints_confirmed = false;
   /// By JointName: what the quay says of each joint in this frame.
   std::array<JointDoubt, 3> joint_doubts;
-  /// The quay's top as this session found it, from the frame on in which it did, if nobody has measured it.
+  /// The quay's level surface as this session found it; empty before that, and if it need not be found.
   std::optional<SeenTop> found_top;
 
   MotionProducts motion;
@@ -83,7 +83,7 @@ class HullTracker {
   HullTracker(HullTracker&&) noexcept;
   HullTracker& operator=(HullTracker&&) noexcept;
 
-  /// `joints` must hold every sample available; a scan that it does not bracket is not registered.
+  /// `joints`: all samples so far. A scan is registered only if samples lie before and after every datagram.
   [[nodiscard]] TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
 
  private:

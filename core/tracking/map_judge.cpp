@@ -17,27 +17,27 @@ namespace {
 constexpr double kPosition = HealthContract::kPosition;
 constexpr double kAttitude = HealthContract::kAttitude;
 
-// The longest ship that ever was measured 458 m. What is longer is in another unit, or more than a ship.
+// The longest ship ever built was 458 m long. A longer map is in another unit, or holds more than a ship.
 constexpr double kLongestHull = 500.0;  // m
-// The smallest vessel that a loader serves. A shorter map may be a part of one, or in another unit.
+// Length of the smallest vessel that a loader serves. A shorter map may be part of one, or in another unit.
 constexpr double kShortestHull = 20.0;  // m
-// The beamiest hulls, pontoons, are half as wide as long. A map that is hardly longer along X than across has
-// its axes turned, or is a piece.
+// Least ratio of a map's length along X to its width along Y. The widest hulls, pontoons, are half as wide as
+// long. A map below this ratio has its axes turned, or is a piece of a ship.
 constexpr double kLeastSlender = 1.25;
 
-// From this distance on an attitude that is off by all that the contract allows puts the hull off by all that
-// it allows for the position: 0.05 m / 0.1 deg = 28.6 m. The displacement then is of no place on the ship.
+// Largest distance of the reference point from the nearest map point: 0.05 m / 0.1 deg = 28.6 m. There the
+// attitude error that the contract allows moves the hull by as much as the position error that it allows.
 const double kFarthestReference = kPosition / kAttitude;
 
-// A hull heels by 6 deg at most, trims by 2 deg and turns by 6 deg against its map (hull_search.cpp): some 9
-// deg together, which move a point by this share of its distance from the reference point.
+// Turning moves a map point by at most this share of its distance from the reference point: a hull heels by
+// at most 6 deg, trims by 2 deg and yaws by 6 deg against her map (hull_search.cpp), some 9 deg together.
 constexpr double kMostTurned = 0.16;
 
-// What a healthy frame needs confirmed (integrity_limits.cpp).
+// Confirmed surfels that a healthy frame needs (integrity_limits.cpp).
 constexpr std::size_t kFewestSurfaces = 40;
 
-// Eight points within 0.3 m make a surface (surfels.cpp), eight within 0.12 m the top of a coaming: points a
-// square grid of sqrt(pi r^2 / 8) apart.
+// Spacing of a square grid of map points that has eight of them within r: sqrt(pi r^2 / 8). A surface needs
+// eight points within 0.3 m (surfels.cpp), the top of a coaming eight within 0.12 m. For messages only.
 constexpr double kSurfaceSpacing = 0.19;  // m
 constexpr double kRimSpacing = 0.075;     // m
 
@@ -55,7 +55,7 @@ Findings& warn(Findings& findings, const char* key, std::string message) {
   return findings;
 }
 
-/// ": in centimetres it would be 91 m", for the units in which the length is a ship's; else empty.
+/// "; in centimetres it would be 91 m" if the length would be a ship's in that unit; else empty.
 std::string as_another_unit(double length) {
   for (const auto& [name, size] : {std::pair{"centimetres", 0.01}, {"millimetres", 0.001}}) {
     if (length * size >= kShortestHull && length * size <= kLongestHull) {
@@ -157,7 +157,7 @@ void judge_region(const Cloud& cloud_H, const HullConfig& hull, Findings& findin
   }
 }
 
-/// The middle one of the distances from some map points to their nearest neighbours, m.
+/// Median distance from at most kSamples map points to their nearest neighbours, m.
 double spacing_of(const HullMap& map) {
   constexpr std::size_t kSamples = 999;
   const Cloud& cloud = map.cloud_H();
@@ -172,7 +172,7 @@ double spacing_of(const HullMap& map) {
   return *middle;
 }
 
-/// Directions of the six that stay free although each flat piece of the map were seen once.
+/// How many of the six directions of a pose stay free even if every flat piece of the map is seen once.
 int free_directions(const std::vector<PlaneMap::Plane>& planes) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const PlaneMap::Plane& plane : planes) {

@@ -1,10 +1,10 @@
 // Is a map one of a hull, and can a ship be tracked by it as it is configured?
 //
-// Refused is what gives a pose another meaning than the contract's (a unit that is not the metre, a reference
-// point off the ship) and what contradicts itself (a region or an envelope that no pose can lie in). What can
-// only cost health is warned of: no pose is fine, and an unfinished site may want to start all the same.
-// Frames: map in H, region in W, envelope as displacements; metres. Pure. Cost: judge_cloud() 5 ns a point,
-// judge_map() some milliseconds.
+// Refused: what gives a pose another meaning than the contract's (the map's unit is not the metre, the
+// reference point is far off the ship), a region or an envelope that no pose can lie in, and a map with too
+// few points to match or to judge a pose by. Warned of: what can only cost health. A service without health
+// does no harm, and a site that is not finished may want to start. Frames: map in H, region in W, envelope
+// as displacements; metres. Pure. Cost: judge_cloud() 5 ns a point, judge_map() some milliseconds.
 #pragma once
 
 #include <string>
@@ -22,10 +22,10 @@ struct MapFinding {
   std::string message;  // what is wrong, with figures; what to do
 };
 
-/// What the points themselves tell, before anything is built of them. `cloud_H`: one point or more, finite.
+/// Judges the points alone, before a HullMap is built of them. `cloud_H`: one point or more, finite.
 [[nodiscard]] std::vector<MapFinding> judge_cloud(const Cloud& cloud_H, const TrackerConfig& config);
 
-/// What the surfaces of a map tell that judge_cloud() does not refuse.
+/// Judges the surfaces of a map. To be called only if judge_cloud() refuses nothing.
 [[nodiscard]] std::vector<MapFinding> judge_map(const HullMap& map);
 
 [[nodiscard]] bool is_refused(const std::vector<MapFinding>& findings);

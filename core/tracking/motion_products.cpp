@@ -5,10 +5,10 @@ namespace {
 
 ShipMotion as_motion(const Eigen::Vector4d& v) { return {v[0], v[1], v[2], v[3]}; }
 
-/// Weight of a pose in the slope; u = -1 at the oldest, 1 at the newest. A swing of amplitude A and period P
-/// turns the plain slope over T by up to 6/pi A P / T^2, heave of 5 cm at 15 s the draft rate by 1.4 m/h.
-/// With weights that vanish at the ends together with their derivative it is 210/pi^3 A P^3 / T^4, 0.3 m/h,
-/// at the price of 1.5 times the noise.
+/// Weight of a pose in the slope: 0 at the oldest (u = -1) and the newest (u = 1), 1 in the middle. With
+/// equal weights a swing of amplitude A and period P changes a slope over T by up to 6/pi A P / T^2: heave of
+/// 5 cm at 15 s changes the draft rate by 1.4 m/h. These weights vanish at both ends, and so does their
+/// derivative. With them it is 210/pi^3 A P^3 / T^4, 0.3 m/h; the price is 1.5 times the noise.
 double weight(double u) {
   const double w = 1.0 - u * u;
   return w * w;
@@ -39,7 +39,7 @@ void MotionGauge::forget(MeasurementTime now) {
     return;
   }
   const Nanoseconds away = now - entries_.back().time;
-  if (away <= Nanoseconds{0} || away > kAway) {  // a clock that ran backwards is another run
+  if (away <= Nanoseconds{0} || away > kAway) {  // a gap, or time that does not advance
     entries_.clear();
   }
   while (!entries_.empty() && now - entries_.front().time > kWindow) {
@@ -58,7 +58,7 @@ std::optional<ShipMotion> MotionGauge::rate() const {
   double tt_sum = 0.0;
   Eigen::Vector4d v_sum = Eigen::Vector4d::Zero();
   Eigen::Vector4d tv_sum = Eigen::Vector4d::Zero();
-  const Eigen::Vector4d& first = entries_.front().values;  // differences keep the digits
+  const Eigen::Vector4d& first = entries_.front().values;  // taken off against loss of digits
   for (const Entry& entry : entries_) {
     const double t = to_seconds(entry.time - oldest) - half;
     const double w = weight(t / half);

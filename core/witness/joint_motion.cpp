@@ -9,23 +9,24 @@
 namespace hulltrack {
 namespace {
 
-// A move that is shorter says little of a joint.
+// A joint that moves by less gives no trial, by JointName, m and rad: it says little.
 const Eigen::Vector3d kShortest(0.5, radians(2.0), radians(1.0));
-// A pose settles this long after the machine.
+// A move ends this long after the joints have stopped: the pose takes as long to settle.
 constexpr Nanoseconds kSettles = std::chrono::milliseconds(300);
-constexpr Nanoseconds kLongest = std::chrono::seconds(10);
-constexpr Nanoseconds kGap = std::chrono::milliseconds(500);
+constexpr Nanoseconds kLongest = std::chrono::seconds(10);    // a move is ended after this
+constexpr Nanoseconds kGap = std::chrono::milliseconds(500);  // frames farther apart: a move is dropped
 
-// What a moored ship does by herself within ten seconds, 1 sigma: rolls and pitches with the waves, ranges at
-// her lines with half a period of 15 s and more; rotation, then translation.
+// A moored ship's own motion within ten seconds, 1 sigma; rotation, then translation, rad and m. She rolls
+// and pitches with the waves, and ranges at her lines with half a period of 15 s and more.
 const Twist kOwnMotion = (Twist() << radians(0.3), radians(0.1), radians(0.1), 0.15, 0.10, 0.05).finished();
-// As many moves as this are what that is worth when a scatter is estimated.
+// The prior for the scatter, that the ship moves by kOwnMotion, counts as this many moves.
 constexpr double kPriorMoves = 10.0;
 
-// Student's t that one machine in a million reaches by chance, two-sided, with the 13 degrees of freedom of
-// four moves and the prior; more moves have smaller ones.
+// A joint is contradicted if |t| is larger. One machine in a million reaches this by chance, two-sided, with
+// 13 degrees of freedom (four moves and the prior). With more moves it is rarer still.
 constexpr double kBeyondChance = 8.7;
-// Below this it is an encoder's drift within its class over a short move: 0.05 deg of 2.5 deg.
+// A joint is contradicted only if |s| is larger. A smaller s may be an encoder's drift within the wear class
+// over a short move: 0.05 deg of 2.5 deg.
 constexpr double kLeast = 0.02;
 
 Eigen::Vector3d values(const Joints& joints) { return {joints.d_x, joints.theta_r, joints.theta_p}; }
@@ -67,7 +68,7 @@ void JointMotionWitness::finish(const Move& move, const Moment& end) {
   y << so3_log(end.R_W_H * move.begin.R_W_H.transpose()), end.reference_W - move.begin.reference_W;
   const Columns X = kOwnMotion.cwiseInverse().asDiagonal() * move.X;
   const Twist whitened = kOwnMotion.cwiseInverse().asDiagonal() * y;
-  // A joint that hardly moved is taken to be right: its s is held by a prior of sigma 1.
+  // The identity is a prior of sigma 1 on each s: the s of a joint that hardly moved stays near 0.
   const Eigen::Matrix3d information = X.transpose() * X + Eigen::Matrix3d::Identity();
   const Eigen::LDLT<Eigen::Matrix3d> solver(information);
   const Eigen::Vector3d s = solver.solve(X.transpose() * whitened);
@@ -102,7 +103,7 @@ JointMotionWitness::Evidence JointMotionWitness::evidence(JointName joint) const
   }
   evidence.both_ways = forward > 0 && forward < trials.size();
   evidence.s = sum / worth;
-  double scatter = kPriorMoves;  // in units of what the ship does by herself
+  double scatter = kPriorMoves;  // sum of squares in units of the ship's usual motion: about 1 a move
   for (const Trial& trial : trials) {
     scatter += trial.worth * (trial.s - evidence.s) * (trial.s - evidence.s);
   }

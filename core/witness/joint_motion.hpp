@@ -1,14 +1,17 @@
-// Does the hull move in time with the loader's joints? No ship does, so then a joint is not what it reads.
+// Does the hull seem to move whenever a joint of the loader moves? No ship does: such a joint reads wrongly.
 //
-// A joint that reads q while the machine turns or travels by another amount lets the hull seem to move by s
-// times the joint's own motion: s = 1 - dq_true / dq_read, so 2 with a wrong sign, 0.02 with a scale that is
-// 2 % off. Every move of the machine (from rest to rest, at most ten seconds) is one trial: by how much did
-// the hull seem to move (y), by how much would it have with s = 1 (one column of X a joint)? s of a move is
-// the least squares answer under what a moored ship does by herself meanwhile. Over the moves s has a mean
-// and a scatter; a ship that surges, is warped or sinks scatters, since she does not know which way the joint
-// goes. Student's t of the mean, with the ship's usual motion as a prior for the scatter, is the evidence: it
-// takes several moves, to and fro. No moving joint, no verdict. Frame W, about the hull's reference point;
-// metres, radians. Thread rule: one owner. Cost: a few microseconds.
+// - If a joint reads a step dq_read but really makes dq_true, the hull seems to move by s times the motion
+//   that dq_read gives a point at the hull: s = 1 - dq_true / dq_read. s is 0 for a right joint, 2 for a
+//   wrong sign, 0.02 for a scale that is 2 % off.
+// - A move is a motion of the machine from rest to rest, ten seconds at most. Each move is one trial: least
+//   squares give an s of each joint from y = X s + the ship's own motion. y is the hull's apparent motion, X
+//   has for each joint the column that y would be with s = 1.
+// - The mean of s over the moves is tested against zero by Student's t. A ship does not know which way the
+//   joint goes, so her own motion makes s scatter. The scatter has a prior: a moored ship's usual motion. A
+//   verdict takes several moves, in both directions.
+// Input: the hull's poses and the machine's stands, frame by frame. Frame W, about the hull's reference
+// point; metres, radians. Failure: no verdict on a joint that does not move. Thread rule: one owner. Cost: a
+// few microseconds.
 #pragma once
 
 #include <array>
@@ -23,23 +26,23 @@ namespace hulltrack {
 
 class JointMotionWitness {
  public:
-  /// Moves that are remembered of each joint.
+  /// Of each joint this many moves are remembered; with fewer than kFewestMoves there is no verdict.
   static constexpr std::size_t kMoves = 40;
   static constexpr std::size_t kFewestMoves = 4;
 
   explicit JointMotionWitness(const MachineConfig& machine) : machine_(machine) {}
 
-  /// Once a frame whose pose the scan does not contradict: where the reference point seems to be and how the
-  /// hull seems to lie. Frames come in order of time.
+  /// To be called once for each frame whose pose the scan does not contradict, in order of time.
+  /// `reference_W`, `R_W_H`: the hull's reference point and attitude by that pose.
   void add(MeasurementTime time, const MachineStand& stand, const Eigen::Vector3d& reference_W,
            const Eigen::Matrix3d& R_W_H);
 
-  /// What the moves so far say of a joint.
+  /// What the moves so far show of a joint; s and t are 0 with fewer than kFewestMoves.
   struct Evidence {
     std::size_t moves = 0;
-    double s = 0.0;  // mean over the moves
-    double t = 0.0;  // Student's t of it
-    bool both_ways = false;
+    double s = 0.0;          // mean over the moves, no unit
+    double t = 0.0;          // Student's t: s divided by its standard error
+    bool both_ways = false;  // there are moves of both signs
   };
   [[nodiscard]] Evidence evidence(JointName joint) const;
 
@@ -61,12 +64,12 @@ class JointMotionWitness {
     Moment begin;
     MeasurementTime last_moving;
     Columns X = Columns::Zero();
-    Eigen::Vector3d travelled = Eigen::Vector3d::Zero();  // of each joint, m, rad, with sign
+    Eigen::Vector3d travelled = Eigen::Vector3d::Zero();  // sum of each joint's steps, with sign, m or rad
   };
   struct Trial {
     double s;
-    double worth;  // 1 / variance
-    bool forward;
+    double worth;  // 1 / variance of s, if the ship moves as usual
+    bool forward;  // the joint's value grew
   };
   void finish(const Move& move, const Moment& end);
 

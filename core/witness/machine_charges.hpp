@@ -1,7 +1,9 @@
-// What the machine stands charged with: each joint by itself, latency, the sensor's place, being elsewhere.
+// The machine's open charges: why it counts as worn beyond its class (ICD 3.1), which costs health.
 //
-// What is charged may look right where something else explains the scan as well, so that no charge is
-// dropped for another one, but each when it is acquitted. Thread rule: a plain value.
+// There is room for six: one for each joint, and one each for latency, the sensor's place, and a machine that
+// is off by an unknown amount. A new charge does not drop those of other kinds: two explanations may fit one
+// scan equally well. The owner drops each charge when frames disprove it. No failure. Thread rule: a plain
+// value.
 #pragma once
 
 #include <array>
@@ -15,24 +17,24 @@
 
 namespace hulltrack {
 
-/// A joint that reads so much too much, m or rad.
+/// A joint that reads `amount` too much, m or rad.
 struct WrongJoint {
   JointName joint = JointName::travel;
   double amount = 0.0;
 };
-/// Joint values that are so much older than they are taken to be, s.
+/// Joint values that are older by `older` than plc.latency_ms says, s; negative: younger.
 struct WrongLatency {
   double older = 0.0;
 };
-/// A sensor that is off by a twist about its place, by the mount or by several joints, as the machine stood.
+/// A sensor that is off by the twist `off` about its own position, because of its mount or several joints.
+/// `stand`: of the machine when that was seen.
 struct WrongPlace {
   MachineStand stand;
   Twist off = Twist::Zero();
 };
-/// A machine that is so far off that nothing tells by how much.
+/// A machine that is so far off that the scan does not tell by how much: it sees through the quay's surfaces.
 struct WrongAltogether {};
 
-/// Why the machine is beyond its class.
 struct MachineCharge {
   std::string reason;
   std::variant<WrongJoint, WrongLatency, WrongPlace, WrongAltogether> what;
@@ -41,15 +43,15 @@ struct MachineCharge {
 class MachineCharges {
  public:
   [[nodiscard]] bool any() const;
-  /// Of the last one that was made, or of any other that stands; empty without one.
+  /// The text of the newest charge, or of another if that has been dropped; empty without charges.
   [[nodiscard]] std::string reason() const;
 
-  /// Replaces what was charged to the same joint, or of the same kind.
+  /// Replaces the charge of the same joint, or of the same kind if it is not a joint's.
   void add(const MachineCharge& charge);
 
-  /// The joint that is charged, the next one each time; nothing without any.
+  /// One of the charged joints. Each call goes on to the next one, in turn; nothing if no joint is charged.
   [[nodiscard]] std::optional<WrongJoint> next_joint();
-  /// The charge of that kind which is no joint's, if it stands.
+  /// The charge of kind `Wrong`, which is not WrongJoint; nothing if there is none.
   template <typename Wrong>
   [[nodiscard]] std::optional<Wrong> charged() const {
     const auto& charge = slots_.at(slot_of<Wrong>());
@@ -64,7 +66,7 @@ class MachineCharges {
   void drop_all() { slots_ = {}; }
 
  private:
-  /// Those of joints come first.
+  /// Index in slots_: joints by JointName, then the other kinds in the variant's order.
   [[nodiscard]] static std::size_t slot(const MachineCharge& charge);
   template <typename Wrong>
   [[nodiscard]] static std::size_t slot_of() {
@@ -73,8 +75,8 @@ class MachineCharges {
   }
 
   std::array<std::optional<MachineCharge>, 6> slots_;
-  std::size_t newest_ = 0;
-  std::size_t asked_ = 0;
+  std::size_t newest_ = 0;  // slot of the charge that was added last
+  std::size_t asked_ = 0;   // joint that next_joint() gave last
 };
 
 }  // namespace hulltrack

@@ -12,9 +12,9 @@ namespace hulltrack {
 namespace {
 
 constexpr double kNoiseSigmas = 4.0;
-const double kSpread = std::sqrt(3.0);
+const double kSpread = std::sqrt(3.0);  // three sigma of what is spread evenly between -1 and 1
 
-/// Twists along the measured directions: one column each.
+/// Components of twists along the measured directions: one column for each twist.
 Eigen::MatrixXd along(const Misplacement& seen, const std::vector<Twist>& twists) {
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(seen.measured.size()),
                           static_cast<Eigen::Index>(twists.size()));
@@ -27,7 +27,7 @@ Eigen::MatrixXd along(const Misplacement& seen, const std::vector<Twist>& twists
   return columns;
 }
 
-/// What was seen, and how it is held against wear: y = G w + noise, along the measured directions.
+/// Measured offsets y, and wear and noise to compare them with: y = G w + noise (see machine_doubt.hpp).
 struct Weighing {
   Eigen::VectorXd y, noise;
   Eigen::MatrixXd G, S_inverse;
@@ -39,7 +39,7 @@ struct Weighing {
     S_inverse = S.ldlt().solve(Eigen::MatrixXd::Identity(y.size(), y.size()));
   }
 
-  /// How much of `h` there is in y, and how much of that wear can be.
+  /// How much of `h` is in y, how much of it wear and noise can fake, and the gain.
   [[nodiscard]] JointDoubt doubt_along(const Eigen::VectorXd& h) const {
     const Eigen::VectorXd weights = S_inverse * h;
     const double worth = h.dot(weights);
@@ -54,7 +54,7 @@ struct Weighing {
   }
 };
 
-/// All that is measured, held against wear and what else may be wrong. Precondition: something is measured.
+/// Of all measured directions, with wear and the reference's errors. Precondition: something is measured.
 Weighing weigh(const MachineConfig& machine, const MachineStand& stand, const Misplacement& seen,
                const std::vector<Twist>& of_reference) {
   const auto n = static_cast<Eigen::Index>(seen.measured.size());
@@ -69,8 +69,9 @@ Weighing weigh(const MachineConfig& machine, const MachineStand& stand, const Mi
   return {std::move(y), std::move(noise), along(seen, twists)};
 }
 
-/// Where wear hides more than this the joint hardly moves what is seen, and explains it by metres: a quay's
-/// top that slopes a little tells of travel only so. The strain tells then.
+/// A joint is not accused where wear could hide more of it than this: it then hardly moves what is seen, and
+/// metres of it would stand for a small offset. So it is with travel where only a top that slopes a little is
+/// seen. The strain is checked all the same.
 double most_hidden(JointName joint) { return joint == JointName::travel ? 2.0 : radians(5.0); }  // m, rad
 constexpr std::array<double, 6> kMostHiddenOfMount = {1.0, 1.0, 1.0, 0.1, 0.1, 0.1};             // m, rad
 
@@ -101,8 +102,8 @@ MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& sta
                   (mount.hidden <= kMostHiddenOfMount[i] && std::abs(mount.reads_too_much) > mount.hidden);
   }
   doubt.strain = weighing.y.dot(weighing.S_inverse * weighing.y);
-  // Wear that is spread evenly between its limits has a mean square of a third, along every direction that S
-  // whitens; nine times that is three sigma.
+  // The strain of wear at its limits is at most the number of kinds of wear. Wear that is spread evenly
+  // between them has a mean square of 1/3 in each direction; nine times that, three sigma, is 3 a direction.
   doubt.most_strain =
       std::min(static_cast<double>(weighing.G.cols()), 3.0 * static_cast<double>(weighing.y.size()));
   doubt.beyond_class = doubt.accused || doubt.mount || doubt.strain > doubt.most_strain;
@@ -119,7 +120,7 @@ JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand
                          const Misplacement& at_rest) {
   const auto n = static_cast<Eigen::Index>(seen.measured.size());
   const Twist since = seen.twist - at_rest.about(seen.centre_W);
-  double rest_sigma = 0.0;  // the largest: directions of the two differ
+  double rest_sigma = 0.0;  // of the worst direction at rest: the two have different directions
   for (const Misplacement::Measurement& measured : at_rest.measured) {
     rest_sigma = std::max(rest_sigma, measured.sigma);
   }

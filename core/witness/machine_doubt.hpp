@@ -1,15 +1,20 @@
-// Is the machine where its encoders say? The quay's verdict on joints, mounts and latency.
+// Can wear explain how the quay lies in the scan, or does a joint, a mount or the latency read wrongly?
 //
-// The misplacement that a scan shows (misplacement.hpp) is held against all that wear within the class can do
-// (machine_wear.hpp). One joint that reads something else than it should explains it better than any wear
-// can: that joint is accused, with the amount. Or nothing within the class explains it: then the machine is.
+// Input: the measured misplacement of the sensor (misplacement.hpp). It is compared with all that wear within
+// the class can do (machine_wear.hpp, ICD 3.1). For each joint it is estimated how much the joint reads too
+// much, and how much of that wear or noise could fake (`hidden`). Of the joints that are beyond `hidden` the
+// one that explains most is accused, with its amount. Even if none is accused, the machine is beyond its
+// class where the mount, or the misplacement as a whole, is more than wear explains.
 //
-// With w the wear in units of its class, |w_k| <= 1, and G its twists along the measured directions, the
-// offsets are y = G w + noise. S = G G^T + noise weighs them. What joint j reads too much is estimated as a =
-// (h . S^-1 y) / (h . S^-1 h), h its twist; wear alone lets this be as large as sum_k |h . S^-1 g_k|, and,
-// its terms being independent, hardly ever more than sqrt(3) times the root of the sum of their squares
-// (three sigma of terms spread evenly between their limits). Beyond the smaller of the two, and four sigma of
-// noise, the joint is accused. Frame W; metres, radians. Pure. Cost: a few 6 x 6 solutions, 10 us.
+// - y: the measured offsets. w: the wear, |w_k| <= 1. G: a column g_k for each kind of wear, its twist at its
+//   limit along the measured directions. y = G w + noise. S = G G^T + the covariance of the noise.
+// - h: the twist of joint j for one unit, D = h . S^-1 h. The joint reads a = (h . S^-1 y) / D too much.
+// - Wear alone can make a as large as sum_k |h . S^-1 g_k| / D. It hardly ever makes more than sqrt(3) times
+//   the root of the sum of the squares of these terms: three sigma, if the w_k are independent and spread
+//   evenly between their limits.
+// - `hidden` is the smaller of these two, plus four sigma of noise.
+// Frame W; metres, radians. Pure. Failure: where nothing is measured nothing is accused. Cost: a few 6 x 6
+// solutions, 10 us.
 #pragma once
 
 #include <array>
@@ -22,47 +27,48 @@
 
 namespace hulltrack {
 
-/// What wear within the class hides of one joint, and what was found.
+/// What one frame shows of one joint.
 struct JointDoubt {
-  double reads_too_much = 0.0;  // m, rad
-  /// Up to here it may be wear, m, rad; infinite where nothing is measured.
+  double reads_too_much = 0.0;  // m or rad
+  /// The largest amount that wear and noise could fake, m or rad; infinite where nothing is measured.
   double hidden = std::numeric_limits<double>::infinity();
-  double gain = 0.0;  // how much better than wear it explains what is seen, in units of S
-  /// Whether an error that is too large to be seen as such would be found (quay_search.hpp).
+  double gain = 0.0;  // fall of y . S^-1 y if this joint's error is allowed, no unit
+  /// Whether guesses would find an error that is too large for offsets. Set by MachineWitness, see
+  /// quay_search.hpp.
   bool finds_large = false;
 };
 
 struct MachineDoubt {
   std::array<JointDoubt, 3> joints;  // by JointName
-  double strain = 0.0;               // y . S^-1 y, the wear that would be needed, squared and summed
-  double most_strain = 0.0;          // what wear within the class can come to
+  double strain = 0.0;               // y . S^-1 y: chi-square of the misplacement if it is all wear and noise
+  double most_strain = 0.0;          // the largest strain that wear within the class explains
   std::optional<JointName> accused;
   bool mount = false;         // the LiDAR's mount alone, shifted or turned about one axis, is beyond wear
   bool beyond_class = false;  // a joint is accused, or the mount is, or the strain is too large
 };
 
-/// `of_reference`: twists about seen.centre_W, as wear's, by which what the quay is held against may be
-/// wrong.
+/// `of_reference`: errors that the reference (a top that the session has found) may have; twists about
+/// seen.centre_W, treated as more kinds of wear.
 [[nodiscard]] MachineDoubt doubt_machine(const MachineConfig& machine, const MachineStand& stand,
                                          const Misplacement& seen,
                                          const std::vector<Twist>& of_reference = {});
 
-/// The same of joint values that are older than they are taken to be: what of the misplacement has come since
-/// the machine stood (`at_rest`), held against what wear can change meanwhile. Both hold all six directions.
-/// Amounts in s.
+/// How much older the joint values are than they are taken to be; amounts in s. Measured by the change of the
+/// misplacement since the machine stood (`at_rest`), and compared with what wear can change meanwhile.
+/// Precondition: both misplacements hold all six directions.
 [[nodiscard]] JointDoubt doubt_latency(const MachineConfig& machine, const MachineStand& stand,
                                        const Misplacement& seen, const Misplacement& at_rest);
 
-/// How much there is of a twist about seen.centre_W, and how much of it wear within the class hides, in units
-/// of that twist.
+/// How much of `twist` (about seen.centre_W) the misplacement contains, and how much of it wear could fake;
+/// amounts as multiples of `twist`.
 [[nodiscard]] JointDoubt doubt_twist(const MachineConfig& machine, const MachineStand& stand,
                                      const Misplacement& seen, const Twist& twist,
                                      const std::vector<Twist>& of_reference = {});
 
-/// In words with figures, why a joint is accused: it reads `amount` (m, rad) too much.
+/// Why a joint is accused, in words with figures: it reads `amount` (m or rad) too much.
 [[nodiscard]] std::string accusation(JointName joint, double amount);
 
-/// In words with figures; empty without doubt.
+/// Why the machine is beyond its class, in words with figures; empty if it is not.
 [[nodiscard]] std::string describe(const MachineDoubt& doubt, const Misplacement& seen);
 
 }  // namespace hulltrack

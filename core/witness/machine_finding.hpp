@@ -1,4 +1,5 @@
-// What the witnesses of the machine say of it in a frame. A plain value.
+// What the witnesses say of the machine in one frame: the quay, or the hull's motion with a joint.
+// A plain value.
 #pragma once
 
 #include <string>
@@ -9,10 +10,10 @@
 namespace hulltrack {
 
 struct MachineFinding {
-  Faults faults = 0;                 // plc_value while the machine is contradicted
+  Faults faults = 0;                 // plc_value while the machine is contradicted, also by earlier frames
   std::string reason;                // with figures; empty without a fault
-  bool confirmed = false;            // a quay map confirms all six axes in this very frame
-  std::array<JointDoubt, 3> joints;  // by JointName: what the quay says of them in this frame
+  bool confirmed = false;            // a quay map shows in this frame that all six axes are right
+  std::array<JointDoubt, 3> joints;  // by JointName: what the quay shows of each joint in this frame
 };
 
 }  // namespace hulltrack

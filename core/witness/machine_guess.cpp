@@ -9,7 +9,7 @@ namespace {
 /// What may be off: a joint, or the mount turned about an axis of W.
 enum class Suspect : std::uint8_t { travel, slew, luff, mount_x, mount_y, mount_z };
 
-/// Amounts from `first` on, `count` of them to either side, m or deg.
+/// `count` amounts, `step` apart from `first` on, each with both signs; m or deg.
 struct Series {
   Suspect suspect;
   double first, step;
@@ -25,10 +25,10 @@ constexpr std::array<Series, 6> kSeries = {{{Suspect::travel, 0.55, 0.35, 15},
 struct Guess {
   Suspect suspect = Suspect::travel;
   double off = 0.0;    // m, deg
-  bool first = false;  // of its series
+  bool first = false;  // it has the smallest amount of its series
 };
 
-/// All of them, the nearest of each first.
+/// The smallest amounts of all series first, then the next ones.
 constexpr std::array<Guess, kMachineGuesses> kGuesses = [] {
   std::array<Guess, kMachineGuesses> guesses{};
   std::size_t number = 0;
@@ -57,7 +57,7 @@ MachineGuess machine_guess(std::size_t number) {
 
 Twist twist_of(const MachineGuess& guess, const MachineConfig& machine, const MachineStand& stand) {
   const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  constexpr int kTurns = 3;  // come after shifts
+  constexpr int kTurns = 3;  // index of the first turn in mount_twists(): three shifts come before
   return guess.amount * (guess.joint
                              ? joint_twist(machine, stand, *guess.joint, origin)
                              : mount_twists(stand, origin).at(static_cast<std::size_t>(kTurns + guess.axis)));

@@ -5,20 +5,21 @@
 namespace hulltrack {
 namespace {
 
-// The class (ICD 3.1).
+// Limits of the wear class (ICD 3.1).
 constexpr double kBoomSag = 0.10;        // m, at the boom's end
 const double kBacklash = radians(0.10);  // slew and luff
 constexpr double kTravelDrift = 0.03;    // m
 const double kAngleDrift = radians(0.05);
-constexpr double kTravelSlip = 0.001;  // of the travel
+constexpr double kTravelSlip = 0.001;  // share of d_x
 constexpr double kMountShift = 0.02;   // m
 const double kMountTurn = radians(0.10);
 constexpr double kLatency = 0.010;  // s
 
-// A beam that is held at one end and loaded at the other turns there by 3/2 of its sag over its length.
+// The boom's end turns by this times sag / length: a beam held at one end and loaded at the other.
 constexpr double kTurnOfSag = 1.5;
-constexpr double kShortestBoom = 1.0;  // m
+constexpr double kShortestBoom = 1.0;  // m, keeps the division finite
 
+/// A turn by 1 rad about the line along `axis` through the point `through`, as a twist about `centre`.
 Twist about(const Eigen::Vector3d& axis, const Eigen::Vector3d& through, const Eigen::Vector3d& centre) {
   Twist twist;
   twist << axis, axis.cross(centre - through);
@@ -94,7 +95,7 @@ Twist carried_by_boom(const MachineConfig& machine, const MachineStand& then, co
 
 std::vector<Twist> fast_wear_twists(const MachineConfig& machine, const MachineStand& stand,
                                     const Eigen::Vector3d& centre_W) {
-  // How far the boom's end turns when it sags depends on the boom: the two count apart.
+  // Sag is two kinds of wear, a shift and a turn of the boom's end: their ratio depends on the boom.
   const Axes axes = axes_of(machine, stand.joints);
   const double boom =
       std::max(kShortestBoom, (stand.sensor_W - axes.T_W_luff.translation()).head<2>().norm());

@@ -11,37 +11,38 @@ namespace {
 
 constexpr int kNeeded = 3;  // frames in a row, to charge and to acquit: one may be wrong about the quay
 
-// As long as observations are kept at 10 Hz, and half as long again for a boom that swings out.
+// The machine must have stood for this long before a frame counts as seen at rest. Observations are up to 1 s
+// old (10 frames at 10 Hz), and a boom swings out for a while: half as long again.
 constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
 
-// Of returns near a plane most are on it; where nothing is in its place a sixth agrees by chance: of offsets
-// spread over the gate those within 10 cm. The limit is in the middle; at 60 returns it is three sigma off
-// either.
+// The quay is found if this share of the observations agree with one misplacement. Most agree if the returns
+// are the quay's. A sixth agree by chance if nothing is in its place: offsets are then spread over the gate
+// of 0.6 m, and 10 cm agree. The limit is between the two, three sigma off either at 60 returns.
 constexpr double kLeastShare = 0.5;
 constexpr std::uint32_t kFewestObservations = 60;
 constexpr std::uint32_t kFewestAsked = kFewestObservations / QuayObserver::kFrames;  // a frame
-// With eight in ten of the returns near planes on them, lorries and people among them, the quay is surely
-// found.
+// The quay is surely found if this share agree; the rest may be returns of lorries and people.
 constexpr double kSureShare = 0.8;
 
-// A plane that is where it should be is seen through only when what stood there has left: a lorry, a stack of
-// covers. Half of a class of surfaces does not leave within a tide. Where all is in place one plane in a
-// hundred is seen through, at an edge: of 12 a half are not.
+// The machine is charged if rays pass through more than this share of a class of planes, of kFewestReached
+// at least. Rays pass through a plane's true place only if what stood there has left (a lorry, a stack of
+// covers), and half of a class does not leave within a tide. With all in place it is one plane in a hundred,
+// at an edge: hardly ever half of twelve.
 constexpr double kMostSeenThrough = 0.5;
 constexpr double kFewestReached = 12.0;
-constexpr std::size_t kRemembered = 100;
-// A top that the session has found may be turned by so many of its sigmas.
+constexpr std::size_t kRemembered = 100;  // places of planes seen through, of each class
+// The slope of a top that the session has found may be wrong by so many of its sigmas.
 constexpr double kSigmasOfTop = 3.0;
 constexpr const char* kSinceFound = "against where this session found the quay's top, ";
-// Twenty frames, two seconds, are remembered.
+// The sums of Memory lose 5 % a frame: they cover some twenty frames, two seconds.
 constexpr double kFading = 0.95;
 
 std::optional<QuayPlane> known_top(const QuayConfig& quay) {
   return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
 }
 
-/// Whether a sight would have shown what was charged, and shows less than half of it: then nothing of it is
-/// nearer to what is seen than all of it. `left`: in units of what was charged.
+/// Whether a frame would have shown what is charged (wear hides less) and shows less than half of it: what is
+/// seen is then nearer to no error than to the charge. `left`: what is seen, in the unit of `charged`.
 bool refutes(const JointDoubt& left, double charged = 1.0) {
   return left.hidden < std::abs(charged) && left.reads_too_much / charged < 0.5;
 }
@@ -75,7 +76,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     return {};
   }
   if (last_look_ && time - *last_look_ > JointHistory::kMaxGap) {
-    forget_sight();  // the joints may be others by now
+    forget_sight();  // the joints may be wrong in another way by now
   }
   last_look_ = time;
   const QuaySighting* sighting = sighting_of(scan, views, stand, on_trial);
@@ -110,7 +111,8 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
 }
 
-/// Null while there is no top to look for yet.
+/// What the frame shows of the map or the top. Null while the session has not found a top yet; then the frame
+/// is used to find it.
 const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
                                                 const MachineStand& stand, bool on_trial) {
   if (map_ != nullptr) {
@@ -121,8 +123,8 @@ const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::s
   }
   if (const auto& top = learner_->top()) {
     const QuaySighting& sighting = sight_.look_for(top->seen.plane, scan, &top->seen.area_W);
-    // What it is charged with was seen against this top: it is kept until it is acquitted. So is one of which
-    // the place is in view, and it is not there.
+    // A top is given up when its place is long out of view, but not while a charge stands, which was made
+    // against this top. Returns at its place count as view of it, on the plane or not.
     learner_->seen(charges_.any() || sighting.asked >= kFewestAsked);
     return &sighting;
   }
@@ -134,7 +136,8 @@ const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::s
   return nullptr;
 }
 
-/// A top that a worn machine has found is off by as much as that machine was.
+/// Errors that a top found by this session may have, as twists: all wear that the machine may have had then,
+/// and the uncertainty of its slope. Empty for a map or a configured top.
 std::vector<Twist> MachineWitness::doubt_of_reference() const {
   if (!learner_ || !learner_->top()) {
     return {};
@@ -158,7 +161,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   if (found) {
     verdict.doubt = doubt_machine(machine_, stand, seen_, doubt_of_reference());
   }
-  // A quay that is found in its place on all axes is in its place: what is seen through has left.
+  // If the quay is surely found in its place on all six axes, planes that are seen through have been removed.
   const bool surely_in_place =
       found && !verdict.doubt.beyond_class && seen_.holds_all() && agreeing >= kSureShare;
   std::string through = surely_in_place ? std::string{} : seen_through();
@@ -173,7 +176,8 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   return verdict;
 }
 
-/// Joint values that come late put the machine where it was, but only while it moves.
+/// The charge of late joint values, if there is one. They misplace the quay only while the machine moves, so
+/// what is seen now is compared with what was seen at rest.
 std::optional<MachineCharge> MachineWitness::charge_of_lateness(const MachineStand& stand) const {
   if (!at_rest_ || !seen_.holds_all()) {
     return std::nullopt;
@@ -200,9 +204,9 @@ MachineCharge MachineWitness::charge_by(const MachineStand& stand, const Machine
   return charge;
 }
 
-/// Where the joint that is asked about is charged to put the machine the quay may be explained no worse than
-/// where it is said to be, or better at one of the other places that are tried in turn: the verdict is that
-/// of there then, of the better one.
+/// Lets two other places of the machine change the frame's verdict. The place that the charge against joint
+/// `asked` gives decides if it explains the scan no worse than the machine's own values do. The place of the
+/// better guess decides if its surplus is larger, or if the charge's place does not decide.
 void MachineWitness::weigh_other_places(const MachineStand& stand, const std::optional<WrongJoint>& asked,
                                         Verdict& verdict) {
   const auto elsewhere = search_.look(*map_, machine_);
@@ -219,7 +223,7 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const std::op
       verdict = {.known = true, .charge = charge_by(stand, doubt, there.seen), .doubt = doubt};
       return;
     }
-    // Too little may be in view to tell: then only what else this frame shows to be wrong counts.
+    // The charge is neither confirmed nor refuted: the frame counts only if it shows another error.
     if (!there.worse &&
         doubt.joints.at(static_cast<std::size_t>(asked->joint)).hidden >= std::abs(asked->amount)) {
       verdict.known = verdict.charge.has_value();
@@ -231,8 +235,8 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const std::op
   }
 }
 
-/// What a guess that is better comes to, if to a charge: by the planes that are met there, or by the guess
-/// alone once it has lasted and no planes tell of the joint.
+/// The charge that a better guess leads to, if any. Either the planes there show an error beyond wear. Or
+/// they tell nothing of the joint and the guess has lasted: then the guess itself is charged.
 std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand& stand,
                                                              const QuaySearch::Elsewhere& elsewhere) const {
   const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere.seen);
@@ -248,7 +252,8 @@ std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand&
   return std::nullopt;
 }
 
-/// A sight of the quay is of a machine that stands once all of its observations are.
+/// Keeps what is seen as the sight at rest, if the machine has stood for kAtRest (then all observations are
+/// of a standing machine), the frame has no complaint and all six directions are held.
 void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict) {
   const Eigen::Vector3d rate(stand.rate.d_x, stand.rate.theta_r, stand.rate.theta_p);
   if ((rate.cwiseAbs().array() > kStandsBelow.array()).any()) {
@@ -261,8 +266,8 @@ void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, 
   }
 }
 
-/// Of what this frame would have shown, and does not. `asked`: the joint's charge that was held against it.
-/// That a limit has moved, so that wear could explain what was charged, acquits of nothing.
+/// Drops charges that this frame would have shown and does not show; of the joints' charges only `asked`. A
+/// charge stays if wear could now explain the amount: such a frame would not have shown it.
 void MachineWitness::acquit(const MachineStand& stand, const Verdict& verdict,
                             const std::optional<WrongJoint>& asked) {
   if (asked && (verdict.refutes_asked ||
@@ -298,7 +303,8 @@ void MachineWitness::remember(const QuaySighting& sighting) {
   }
 }
 
-/// In words, if rays go through where the quay should be.
+/// The complaint in words, if rays pass through half of a class of the quay's planes, spread over more than
+/// kLongestThing; else empty.
 std::string MachineWitness::seen_through() const {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const Memory& of_class = planes_[i];

@@ -1,9 +1,14 @@
-// Does the quay contradict the machine? One frame's sight of it, and what stands since earlier ones.
+// Does the quay contradict the machine, that is its joints, mounts and latency?
 //
-// A machine beyond its class takes health until sights of the quay that would have shown it again show less
-// than half of it, or a re-acquire edge comes. One frame may be wrong about the quay, three in a row are not;
-// a frame that sees none of it changes nothing. Frames as in the parts that it calls. Thread rule: one owner.
-// Cost: 0.4 ms a frame, 0.7 ms while a charge stands, whatever the map's size.
+// Each frame is judged by what the scan sees of the quay. Three frames in a row with a complaint make a
+// charge (machine_charges.hpp). While any charge stands health is 0. A charge is dropped after three clean
+// frames in a row, if the last one would have shown what is charged and shows less than half of it, or by a
+// re-acquire edge. Three frames, because one may be wrong about the quay. A frame that sees too little of the
+// quay changes nothing.
+//
+// Input: the filtered scan, its views, and where the machine stands. Output: MachineFinding. Frame W; metres,
+// radians. Thread rule: one owner. Cost: 0.4 ms a frame, 0.7 ms while a charge stands, whatever the map's
+// size.
 #pragma once
 
 #include <deque>
@@ -26,24 +31,25 @@ namespace hulltrack {
 
 class MachineWitness {
  public:
-  /// `map` may be null: then the quay's top is the witness, if there is a region to tell quay from hull: as
-  /// `quay` knows it, or as it is found beside `hull_W`, where the hull may lie.
+  /// The witness is the quay map, if there is one. If `map` is null it is the quay's top: as configured in
+  /// `quay`, or else as the session finds it outside of `hull_W`, the box in which the hull may lie. The top
+  /// needs a region, which tells quay from hull; without map and region there is no witness.
   MachineWitness(const QuayConfig& quay, std::shared_ptr<const QuayMap> map, const MachineConfig& machine,
                  const std::optional<Box>& region_W, const Box& hull_W);
 
-  /// Whether there is anything that it could see.
+  /// Whether there is a map, a known top, or a top to be found.
   [[nodiscard]] bool has_quay() const { return map_ != nullptr || top_ || learner_; }
 
-  /// Once a frame, of which `time` is the middle. `views` of the scan, `stand` at its middle.
-  /// `on_trial`: the joints are not believed yet, so nothing is learned by them.
+  /// To be called once a frame. `time`: the middle of the scan; `views`: of the scan; `stand`: of the machine
+  /// at that time. `on_trial`: the joints are not believed yet, so no top is learned from this frame.
   [[nodiscard]] MachineFinding look(MeasurementTime time, const FilteredScan& scan,
                                     std::span<const ScanView> views, const MachineStand& stand,
                                     bool on_trial = false);
 
-  /// A person has checked the joints.
+  /// Drops all charges and all that was seen: a person has checked the joints.
   void forget();
 
-  /// Where this session saw the quay's top that nobody has measured; nothing where it need not be found.
+  /// The quay's top as this session first found it; nothing if it was not found, or does not have to be.
   [[nodiscard]] std::optional<SeenTop> found_top() const {
     return learner_ ? learner_->first() : std::nullopt;
   }
@@ -52,12 +58,12 @@ class MachineWitness {
   [[nodiscard]] const Misplacement& seen() const { return seen_; }
 
  private:
-  /// What one frame comes to: nothing known, or in place (no charge), or elsewhere.
+  /// The outcome of one frame.
   struct Verdict {
-    bool known = false;
-    std::optional<MachineCharge> charge;
+    bool known = false;                   // the quay was seen well enough to say something
+    std::optional<MachineCharge> charge;  // the complaint; nothing: the machine is in place, if `known`
     MachineDoubt doubt;
-    bool refutes_asked = false;  // the joint's charge that was held against it
+    bool refutes_asked = false;  // the frame disproves the charge against the joint that is asked about
   };
   [[nodiscard]] const QuaySighting* sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
                                                 const MachineStand& stand, bool on_trial);
@@ -85,17 +91,18 @@ class MachineWitness {
   QuaySearch search_;
   Misplacement seen_;
   std::optional<MeasurementTime> last_look_;
-  struct Memory {  // of the last frames, fading
-    double reached = 0.0;
+  struct Memory {          // of one class of planes; sums that lose 5 % a frame
+    double reached = 0.0;  // planes that rays reached
     double seen_through = 0.0;
-    std::deque<Point> where_W;  // of the last ones that were seen through
+    std::deque<Point> where_W;  // middles of the last planes that were seen through
   };
   std::array<Memory, QuayMap::kClasses> planes_;
-  /// The quay as it was seen when the machine stood last.
+  /// Nothing while the machine moves.
   std::optional<MeasurementTime> standing_since_;
+  /// What was seen when the machine last stood: lateness is measured against it.
   std::optional<Misplacement> at_rest_;
-  int charges_in_a_row_ = 0;
-  int clean_in_a_row_ = 0;
+  int charges_in_a_row_ = 0;  // frames
+  int clean_in_a_row_ = 0;    // frames
   MachineCharges charges_;
 };
 

@@ -8,38 +8,41 @@ namespace {
 
 constexpr std::size_t kGuessesAFrame = 8;
 
-// A guess is first asked a few of the returns that may tell of any joint, evenly, then more of them and some
-// of those inside level surfaces; all others if it has not lost by then.
+// A guess is tried in three stages: kGlance returns outside of level surfaces; up to kFirst of these and
+// kInsideLevel returns inside level surfaces; all others, if the guess has not lost by then.
 constexpr std::size_t kGlance = 60;
 constexpr std::size_t kFirst = 150;
 constexpr std::size_t kInsideLevel = 30;
-constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns that are held against planes
+constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns compared with planes, of each class
 
-// What a joint moves across its plane by less is held against that plane, give or take what wear moves, m.
+// An error that moves returns along their plane's normal by less than this is seen as offsets, m: they stay
+// within the plane's gate even if wear moves them by another 0.2 m.
 constexpr double kWithinGate = QuayMap::kGate - 0.2F;
-// An observation tells of a joint that moves it across itself by so much of all that it moves it: a top that
-// slopes does not tell of travel.
+// An observation tells of a joint if this share of the motion that the joint gives it is along the plane's
+// normal. So a top that slopes a little does not tell of travel.
 constexpr double kTells = 0.25;
 constexpr std::size_t kFewestThatTell = 20;
 
-// Things that are nearer than this to each other may be one, m.
+// Returns in one cube of this edge (a piece) count as one thing, m.
 constexpr float kPiece = 4.0F;
 
-// In 190 frames of ten berths of the simulator, with lorries, people, covers and a crane on the quay, no
-// wrong guess that gains eight returns of five things gains more than 1.2 times what it loses, and hardly one
-// as much; a right one gains 20 to 450, of 6 to 60 things, and loses a tenth of that, where little of the
-// quay is in view and where much is.
+// A guess is better if it gains kFewestGained returns of kFewestPieces things, and kMuchBetter times what it
+// loses. Measured in 190 frames of ten berths of the simulator, with lorries, people, covers and a crane on
+// the quay: a wrong guess with eight returns of five things gains at most 1.2 times what it loses, and hardly
+// one gains as much as it loses. A right guess gains 20 to 450 returns of 6 to 60 things, and loses a tenth
+// of that, whether little or much of the quay is in view.
 constexpr std::size_t kFewestGained = 8;
 constexpr std::size_t kFewestPieces = 5;
 constexpr std::size_t kMuchBetter = 3;
-// Of the first part a guess that is right gains as much as it loses at least.
+// A guess may be right if it gains so many returns by the end of stage 2, and no fewer than it loses.
 constexpr std::size_t kFewestOfFirst = 2;
-// Once it was, these are enough for it to stay.
+// A kept guess stays while it gains so many returns, and kMuchBetter times what it loses.
 constexpr std::size_t kFewestKept = 4;
-// Of the difference of what is lost and gained, as counts scatter; three frames in a row have to say so.
+// A place is worse if more are lost than gained by so many sigmas of the difference (counts scatter by their
+// root). Three frames in a row have to say so (machine_witness.cpp).
 constexpr double kSigmas = 2.0;
 
-/// Calls take(index) for at most `most` of `count`, evenly, others each turn.
+/// Calls take(index) for at most `most` of `count` indices, evenly spaced, different ones each turn.
 template <typename Take>
 void take_evenly(std::size_t count, std::size_t most, std::uint32_t turn, Take take) {
   const std::size_t stride = std::max<std::size_t>(1, (count + most - 1) / most);
@@ -48,7 +51,7 @@ void take_evenly(std::size_t count, std::size_t most, std::uint32_t turn, Take t
   }
 }
 
-/// How far apart the lowest and the highest are of eight in ten of them.
+/// From the 10th to the 90th percentile.
 float spread(std::vector<float>& values) {
   const auto at = [&](std::size_t rank) {
     const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -88,7 +91,7 @@ void QuaySearch::see(const QuayMap& map, const Cloud& returns_W, const QuayObser
     const auto [near, inside_level] = answers_[i];
     if (inside_level) {
       inside_level_W_.push_back(returns_W[i]);
-    } else if (near || things.in_reach(returns_W[i])) {  // else it can be neither gained nor lost
+    } else if (near || things.in_reach(returns_W[i])) {  // the map says nothing of places out of its reach
       asked_.push_back({returns_W[i], near});
     }
   }
@@ -106,10 +109,11 @@ void QuaySearch::see(const QuayMap& map, const Cloud& returns_W, const QuayObser
   });
 }
 
-/// Of asked_, from `begin` to `end`, with what was counted before.
+/// Adds what asked_[begin, end) gain and lose to the tally. `moves`: from where joints and mount put a return
+/// to where the guess does.
 void QuaySearch::count(const NearCells& things, const Eigen::Isometry3f& moves, std::size_t begin,
                        std::size_t end) {
-  // All are asked before one is looked at: so they do not wait for each other.
+  // All cells are read before the first is used, so that the memory accesses overlap.
   answers_.resize(end);
   for (std::size_t i = begin; i < end; ++i) {
     answers_[i] = things.at(moves * asked_[i].p_W);
@@ -124,8 +128,8 @@ void QuaySearch::count(const NearCells& things, const Eigen::Isometry3f& moves, 
   }
 }
 
-/// Counts all but the first part, and what is inside level surfaces only if that is moved out of them: else
-/// none of it is lost.
+/// Stage 3: the rest of asked_, and the other returns inside level surfaces. A guess that only shifts on the
+/// level or turns about the vertical is taken to leave these in their surface: then they are not counted.
 void QuaySearch::count_rest(const NearCells& things, const Eigen::Isometry3f& moves, const Twist& off) {
   count(things, moves, first_, asked_.size());
   const bool stays_level = off.head<2>().isZero(0.0) && off[5] == 0.0;
@@ -138,7 +142,7 @@ void QuaySearch::count_rest(const NearCells& things, const Eigen::Isometry3f& mo
   }
 }
 
-/// Counts everything. `off`: how the sensor is guessed to be off, about the origin of W.
+/// All three stages. `off`: the guessed error of the sensor's pose, a twist about the origin of W.
 void QuaySearch::tally(const QuayMap& map, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   tally_.clear();
@@ -146,8 +150,8 @@ void QuaySearch::tally(const QuayMap& map, const Twist& off) {
   count_rest(map.things(), moves, off);
 }
 
-/// Counts until it is clear that the guess loses, and whether such an error of a joint would be found; all of
-/// it if that is not clear, or the guess may be right.
+/// Counts stage by stage until it is clear that the guess is wrong, and notes whether a joint's error of that
+/// size would be found.
 void QuaySearch::try_guess(const QuayMap& map, const MachineGuess& guess, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   tally_.clear();
@@ -164,14 +168,16 @@ void QuaySearch::try_guess(const QuayMap& map, const MachineGuess& guess, const 
   would_win_[next_] = guess.joint && (clear || planes_show(guess) || loses_as_much(asked_.size()));
 }
 
-/// Whether what so many of the asked lose is as much as a better guess has to gain.
+/// Whether what is lost among the first `counted` of asked_ is, as their share of all, as much as a better
+/// guess has to gain (of one piece fewer): then an error of that size would be found.
 bool QuaySearch::loses_as_much(std::size_t counted) {
   const double part = double(counted) / double(std::max<std::size_t>(1, asked_.size()));
   return double(tally_.lost.size()) >= part * double(kFewestGained) &&
          is_fixed(tally_.lost, kFewestPieces - 1);
 }
 
-/// Whether the error is so small that most of what was observed stays within the gate of its planes.
+/// Whether the error is so small that most observations stay within the gate of their planes, so that offsets
+/// show it without a guess.
 bool QuaySearch::planes_show(const MachineGuess& guess) const {
   return std::abs(guess.amount) <= shown_up_to_.at(static_cast<std::size_t>(*guess.joint));
 }
@@ -195,7 +201,7 @@ void QuaySearch::note_planes(const QuayObservations& observed, const MachineConf
   }
 }
 
-/// Whether these are of so many things, and too far apart, to be of something that can be moved.
+/// Whether these returns are of so many pieces, and spread so far, that no movable thing explains them.
 bool QuaySearch::is_fixed(const std::vector<std::size_t>& asked, std::size_t fewest_pieces) {
   pieces_.clear();
   for (const std::size_t i : asked) {
@@ -226,8 +232,8 @@ std::size_t QuaySearch::surplus() const {
   return tally_.gained.size() - std::min(tally_.gained.size(), tally_.all_lost());
 }
 
-/// Keeps the best of the next ones, if it is better than the one that is kept. The surplus of what is kept
-/// then.
+/// Tries the next kGuessesAFrame guesses. The best of them replaces the kept guess if its surplus is larger.
+/// Returns the surplus of the guess that is kept then.
 std::size_t QuaySearch::try_guesses(const QuayMap& map, const MachineConfig& machine,
                                     std::size_t surplus_of_kept) {
   std::optional<std::size_t> best;
@@ -282,8 +288,8 @@ QuaySearch::There QuaySearch::look_there(const QuayMap& map, const MachineConfig
   return {.surplus = surplus(), .seen = sight(there_, map, off)};
 }
 
-/// By the planes near returns if `off` is how the sensor is off. With what was observed before until the
-/// observer forgets.
+/// The misplacement of the machine as it stands, if it is off by about `off` (a twist about the origin of W):
+/// what the planes near the moved returns show, plus `off`. The observer adds what it kept of earlier frames.
 Misplacement QuaySearch::sight(QuayObserver& observer, const QuayMap& map, const Twist& off) {
   const Eigen::Isometry3f moves(se3_exp(-off).cast<float>());
   moved_W_.resize(returns_W_.size());

@@ -1,19 +1,22 @@
 // Is more of the quay met where another value of one joint, or another mount, would put the machine?
 //
-// What a return is farther off than QuayMap::kGate belongs to something else. So a joint that is off by a
-// metre finds little near the planes of the map that it moves: nothing, or by chance a wall that looks like
-// another. Guesses are tried in its stead, some each frame: were this joint off by that much, or the mount
-// turned so far, which of the scan's returns would then lie where the map has something, and which no longer?
-// Bollards, cabinets, legs and edges tell as well as walls do; what lies inside large level surfaces tells of
-// luff and mount alone, so that only some of it is asked. Lorries and people, which are in no map, are met
-// nowhere but by chance, and then it is one of them. A guess is better when it gains many returns of many
-// things, farther apart than any face that can be moved is long or tall, and a multiple of those that it
-// loses. It is kept for as long as it is, and what the returns near planes say there is the answer: two kinds
-// of evidence. What every guess at a joint loses in turn is what the true one of them would gain: so the same
-// counts say whether a large error of the joint would be found.
+// Offsets from the map's planes show small errors only: a return farther than QuayMap::kGate off a plane is
+// taken to be of something else. Larger errors are found by guesses (machine_guess.hpp). A guess is one error
+// of a joint, or one turn of the mount. It moves the scan's returns to where they would lie if it were right.
+// - Gained: returns that come to lie near something of the quay's map. Lost: those that no longer do.
+//   Surplus: returns gained less those lost. Everything of the map counts, edges and bollards too.
+// - Returns inside large level surfaces tell of luff and mount only, so only some of them are counted first.
+// - A guess is better if it gains many returns, of many things, and a multiple of what it loses. What it
+//   gains has to be spread farther than any movable thing's face is long or tall: a lorry is in no map, and
+//   may come to lie on something of the map by chance.
+// - The better guess is kept as long as it stays better. The answer is the misplacement that the planes near
+//   the moved returns show: evidence of another kind than the counts.
+// - If each wrong guess at a joint loses many returns, a true error of that size would let the right guess
+//   gain as many. So the same counts say whether a large error of the joint would be found (would_find()).
 //
-// Frame W; metres, radians. Thread rule: one owner. Cost: 0.15 ms a frame, whatever the map's size; all
-// guesses take 1.7 s at 10 Hz.
+// Input: a frame's returns beside the hull, and the map. Frame W; metres, radians. Failure: no answer where
+// too little is in view. Thread rule: one owner. Cost: 0.15 ms a frame, whatever the map's size; all guesses
+// take 1.7 s at 10 Hz.
 #pragma once
 
 #include <array>
@@ -31,54 +34,57 @@ namespace hulltrack {
 
 class QuaySearch {
  public:
-  /// What leaves the quay in one piece is a lorry or a row of containers, 20 m long at most: what is spread
-  /// farther than this does not move. m
+  /// Surfaces that are spread over more than this are not one movable thing, m. The longest things that leave
+  /// a quay in one piece are lorries and rows of containers, 20 m at most.
   static constexpr float kLongestThing = 25.0F;
-  /// What can stand where something of the map would be and look like it is one face of such a thing: of the
-  /// side of a semi-trailer, 13.6 by 4 m, corners are no farther apart than this. m
+  /// Returns that are spread over more than this are not of one face of a movable thing, m. The side of a
+  /// semi-trailer, 13.6 by 4 m, has a diagonal of less.
   static constexpr float kLongestFace = 15.0F;
-  /// And nothing on wheels is taller: where roads have a limit it is 4 to 4.95 m. m
+  /// Returns that are spread in height over more than this are not of a vehicle, m. Roads with a limit allow
+  /// 4 to 4.95 m.
   static constexpr float kTallestVehicle = 5.0F;
 
-  /// A frame's returns beside the hull, what was observed of planes, and where the machine was said to be.
-  /// Takes those of every other frame, and of every one while a guess is kept, or to look `closely`.
+  /// Shows it a frame: the returns beside the hull, the observations of planes, and where joints and mount
+  /// put the machine. It takes every second frame; every frame while a guess is kept or `closely` is set.
   void see(const QuayMap& map, const Cloud& returns_W, const QuayObservations& observed,
            const MachineConfig& machine, const MachineStand& stand, bool closely);
 
   struct Elsewhere {
-    Misplacement seen;  // by the planes near returns there
+    Misplacement seen;  // of the machine as it stands, from the planes near the moved returns
     MachineGuess guess;
-    std::size_t surplus = 0;  // of returns that are gained there over those that are lost
-    bool lasting = false;     // the guess has been better for half a second
+    std::size_t surplus = 0;  // returns gained less those lost
+    bool lasting = false;     // the guess has been kept for kLasting frames, half a second
   };
-  /// The next guesses, of the returns seen last; where the quay then lies if one is better.
+  /// Tries the next guesses on the returns that see() took last. The kept guess and what it shows, if one is
+  /// better than the machine's own values.
   [[nodiscard]] std::optional<Elsewhere> look(const QuayMap& map, const MachineConfig& machine);
   struct There {
-    bool worse = false;    // than in place, by more than chance
-    bool refuted = false;  // besides, by what is too large to be moved
+    bool worse = false;    // more returns are lost than gained, by more than chance
+    bool refuted = false;  // it is worse, and the lost returns are spread too far to be of a movable thing
     std::size_t surplus = 0;
-    Misplacement seen;  // as above; nothing where it is worse
+    Misplacement seen;  // as Elsewhere::seen; empty where it is worse
   };
-  /// Where the quay lies were the joint off by `amount` (m, rad).
+  /// What the returns show if the joint reads `amount` (m, rad) too much.
   [[nodiscard]] There look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
                                  double amount);
 
-  /// Whether an error of the joint that is too large to be seen by offsets from planes would be found. False
-  /// until all guesses at it have been tried.
+  /// Whether guesses would find an error of the joint that is too large to show as offsets from planes. False
+  /// until all guesses at the joint have been tried.
   [[nodiscard]] bool would_find(JointName joint) const;
 
-  /// Begins with the first guess again, and knows of no returns.
+  /// Drops the returns, the kept guess and all answers of would_find(). Begins with the first guess again.
   void forget();
 
  private:
   static constexpr int kLasting = 5;  // frames
+  /// A return whose place is looked up in the map for each guess.
   struct Asked {
-    Point p_W;
-    bool near;  // something of the map, where the machine is said to be
+    Point p_W;  // as joints and mount put it
+    bool near;  // something of the map is near p_W
   };
   struct Tally {
     std::vector<std::size_t> gained, lost;  // indices of asked_
-    std::size_t lost_level = 0;             // of the rest inside level surfaces
+    std::size_t lost_level = 0;             // returns inside level surfaces that are lost and not in asked_
     [[nodiscard]] std::size_t all_lost() const { return lost.size() + lost_level; }
     void clear() {
       gained.clear();
@@ -99,22 +105,22 @@ class QuaySearch {
   void note_planes(const QuayObservations& observed, const MachineConfig& machine);
   [[nodiscard]] Misplacement sight(QuayObserver& observer, const QuayMap& map, const Twist& off);
 
-  bool takes_ = false;  // the newest frame's returns
-  std::uint32_t turn_ = 0;
-  Cloud returns_W_;  // of the frame that was taken
+  bool takes_ = false;      // whether the newest frame's returns were taken
+  std::uint32_t turn_ = 0;  // frames taken: changes which returns are asked first
+  Cloud returns_W_;         // of the frame that was taken
   MachineStand stand_;
   std::vector<Asked> asked_;
-  std::size_t glance_ = 0;                               // so many of them are asked first,
-  std::size_t first_ = 0;                                // and up to here next
-  Cloud inside_level_W_;                                 // near, and of no use for most joints
-  std::size_t level_first_ = 0;                          // so many of these are among asked_
-  std::size_t next_ = 0;                                 // guess
-  std::array<double, kAllJoints.size()> shown_up_to_{};  // amounts, m, rad, by the planes
-  std::bitset<kMachineGuesses> would_win_;               // that lose as much as they would have to gain
-  std::optional<std::size_t> kept_;                      // guess
+  std::size_t glance_ = 0;                               // stage 1 of a guess counts asked_[0, glance_),
+  std::size_t first_ = 0;                                // stage 2 up to first_, stage 3 all the rest
+  Cloud inside_level_W_;                                 // returns inside large level surfaces of the map
+  std::size_t level_first_ = 0;                          // the first so many of these are in asked_ too
+  std::size_t next_ = 0;                                 // number of the guess that is tried next
+  std::array<double, kAllJoints.size()> shown_up_to_{};  // errors up to here show as offsets, m, rad
+  std::bitset<kMachineGuesses> would_win_;               // an error as large as this guess would be found
+  std::optional<std::size_t> kept_;                      // number of the better guess
   int frames_kept_ = 0;
-  QuayObserver of_kept_;
-  QuayObserver there_;  // of one frame
+  QuayObserver of_kept_;  // observations at the kept guess
+  QuayObserver there_;    // observations of look_there(), of one frame only
   // Scratch:
   std::vector<NearCells::Answer> answers_;
   Tally tally_;

@@ -11,7 +11,7 @@ bool TopLearner::may_be_quay(const Point& p_W) const {
   if (rails_y_W_ > hull_W_.max.y()) {
     return p_W.y() > hull_W_.max.y() && p_W.y() < rails_y_W_ + kBehindAxis;
   }
-  return false;  // a loader that stands where the ship lies: the configuration knows better than we do
+  return false;  // the rails lie inside of the berth's box: neither side is known to be the quay
 }
 
 void TopLearner::add(std::span<const Point> returns_W, const MachineStand& stand) {

@@ -1,9 +1,9 @@
-// The quay's top that nobody has measured ([quay] height = "learn"): where this session saw it.
+// Finds the quay's top where nobody has measured it ([quay] height = "learn").
 //
-// Found from the returns of two seconds, on the side of the hull's berth on which the loader stands; found
-// anew where the machine looks at another part of the quay for long. It is as wrong as the joints were when
-// it was found, so it can show that they have changed since, never that they are right. Frame W, metres.
-// Thread rule: one owner.
+// It gathers the returns of 20 frames (two seconds) beside the hull's berth, on the loader's side, and looks
+// for a plane in them (quay_top.hpp). The plane is as wrong as the joints were at that time: it can show that
+// the joints have changed since, never that they are right. After five seconds without view of it, it is
+// given up and looked for again. Frame W, metres. Failure: no plane yet. Thread rule: one owner.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +18,33 @@ namespace hulltrack {
 
 class TopLearner {
  public:
-  static constexpr int kFrames = 20;
-  static constexpr int kMisses = 50;  // frames in a row: five seconds of another part of the quay
-  /// m: from the slewing axis away from the berth. Behind the rails other things are level, too: a yard on a
-  /// fill, water and ships behind a jetty.
+  static constexpr int kFrames = 20;  // gathered before a plane is looked for
+  static constexpr int kMisses = 50;  // frames in a row without view of the top, five seconds: it is given up
+  /// Returns farther than this behind the slewing axis, away from the berth, are left out, m. Other things
+  /// are level there, too: a yard on a fill, water and ships behind a jetty.
   static constexpr float kBehindAxis = 10.0F;
 
   struct Top {
     SeenTop seen;
-    MachineStand stand;  // of the machine when it was found
+    MachineStand stand;  // of the machine when the top was found
   };
 
-  /// `hull_W`: where the hull may lie; `rails_y_W`: where the loader travels.
+  /// `hull_W`: the box in which the hull may lie; `rails_y_W`: Y of the slewing axis, m.
   TopLearner(const Box& hull_W, double rails_y_W)
       : hull_W_(hull_W), rails_y_W_(static_cast<float>(rails_y_W)) {}
 
-  /// Returns of one frame that are outside the hull's region. While there is no top().
+  /// To be called for each frame while there is no top(): its returns outside of the hull's region.
   void add(std::span<const Point> returns_W, const MachineStand& stand);
-  /// Whether a frame had enough returns where top() lies, on it or not.
+  /// To be called for each frame while there is a top(). `enough`: the frame has enough returns where top()
+  /// lies, on the plane or not.
   void seen(bool enough);
-  /// What was gathered so far is of other joints than what comes.
+  /// To be called when the joints may have changed: returns of before and after do not belong together.
   void drop_gathered();
-  /// Joints have been checked: what was found before says nothing of them.
+  /// To be called when the joints have been checked: a top found before says nothing of them.
   void forget();
 
   [[nodiscard]] const std::optional<Top>& top() const { return top_; }
-  /// The first one that was found since the joints were checked, for the people who may write it down.
+  /// The first top since the joints were checked: a person may write it into the configuration.
   [[nodiscard]] const std::optional<SeenTop>& first() const { return first_; }
 
  private:

@@ -13,17 +13,20 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Nanoseconds kGap = JointHistory::kMaxGap;
-/// (a): "the same place", which the contract's wear allows an encoder to drift.
+/// (a): joints this near to where they stood are at the same place (ICD 2.1). Wear within the contract lets
+/// an encoder drift by as much.
 constexpr JointValues kSamePlace{0.02, radians(0.05), radians(0.05)};
-/// (b): a gap in which a machine may well have made another motion than the one assumed is longer.
+/// (b): over a longer gap one steady motion is not assumed; the machine may well have made another.
 constexpr Nanoseconds kLongestBridge = std::chrono::seconds(1);
-/// (b): with 50 ms of jitter at full speed half a second tells the speed to 20 mm/s (1 sigma), 250 ms to 60.
+/// (b): how long samples on either side of the gap must last to tell the speed. With 50 ms of jitter at full
+/// speed, half a second tells it to 20 mm/s (1 sigma), 250 ms only to 60 mm/s.
 constexpr Nanoseconds kSpeedKnown = milliseconds(500);
 constexpr int kConfirmedFrames = 5;
 
-/// How far two stamps may be off against each other. A value is as old as its PLC cycle allows (50 ms are a
-/// slow one), or as the time since the poll that did not show it yet; a gateway takes 5 to 30 ms. What is
-/// later than that may be refused, and is bridged by its neighbours.
+/// By how much two time stamps may be off against each other: 80 ms without a heartbeat, 30 ms and the poll
+/// period (at most 50 ms) with one. A value is as old as its PLC cycle allows (50 ms are a slow one), or as
+/// the time since the poll that did not show it yet; a gateway adds 5 to 30 ms. A value that is later still
+/// may be refused; the samples around it bridge it.
 Nanoseconds stamp_spread(const JointGateConfig& config) {
   constexpr Nanoseconds kSlowCycle = milliseconds(50);
   constexpr Nanoseconds kGateway = milliseconds(30);
@@ -87,7 +90,8 @@ JointGate::Outcome JointGate::judge(const JointSample& sample) {
   if (gap) {
     return try_out(sample);
   }
-  // What is within reach when a value is refused for the first time stays so: it does not grow with the wait.
+  // The time to change speed ends when the first value is refused: what is plausible does not grow with the
+  // wait.
   const auto misfit = believed_.misfit(sample, trial_.track.empty() ? sample.time : trial_.track.began());
   return misfit ? refuse_motion(sample, *misfit) : believe(sample);
 }
@@ -151,8 +155,8 @@ bool JointGate::trial_confirms() {
   return false;
 }
 
-/// (b): with constant acceleration the way between two times is the mean of both speeds times what lies
-/// between.
+/// (b): with constant acceleration, the way between two times is the mean of the two speeds times the time
+/// between. The way that the joints made has to agree with that, and the change of speed with kAcceleration.
 bool JointGate::is_one_motion() const {
   const MeasurementTime suspect = believed_.newest_time() - kGap;
   const auto before = believed_.line(suspect - kSpeedKnown, suspect);
@@ -221,7 +225,7 @@ std::string JointGate::misfit_words(const JointSample& sample, const JointTrack:
                      joint.unit);
 }
 
-/// Names the joint that is farthest from where it was, in contracts.
+/// Names the joint that is farthest from its last believed value, in units of kHalfContract.
 std::string JointGate::trial_words(const JointSample& sample, bool needs_edge) const {
   const JointValues value = values_of(sample.joints);
   const JointValues& old = believed_.newest();

@@ -2,23 +2,22 @@
 //
 // A poll whose heartbeat has not changed brings no sample (where the PLC has a heartbeat). A sample is
 // believed as a whole or not at all:
-//   range   a value that is not finite or outside min..max is refused.
-//   motion  what the machine cannot have done since the last believed sample is refused (joint_track.hpp), a
-//           change faster than max_rate among it. The next one that fits is believed; samples up to 250 ms
-//           apart are interpolated, so that a single refused one costs nothing.
-//   gap     after 250 ms without a believed sample (JointHistory::kMaxGap) values in range are on trial:
-//   scans
-//           may be registered with them, but nothing is healthy. They are believed if
-//           (a) all joints stood still before, and for 250 ms are within 2 cm or .05 deg of where they stood;
-//           (b) the gap is below 1 s and the lines through the half seconds before and after it are those of
-//               one motion with constant acceleration, to half the contract. The quarter of a second before
-//               the gap is left out: what went wrong may have begun before it was noticed;
-//           (c) frames whose joints the quay confirms (frame_done) lie within the trial; or
+//   range   A value that is not finite or outside min..max is refused.
+//   motion  What the machine cannot have done since the last believed sample is refused (see
+//           joint_track.hpp); so is a change faster than max_rate. The next sample that fits is believed.
+//           Samples up to 250 ms apart are interpolated, so that a single refused one costs nothing.
+//   gap     After 250 ms without a believed sample (JointHistory::kMaxGap), values in range are on trial:
+//           scans may be registered with them, but nothing is healthy. They are believed if
+//           (a) all joints stood still before the gap, and for 250 ms are within 2 cm or .05 deg of there; or
+//           (b) the gap is below 1 s, and the half seconds before and after it fit one motion with constant
+//               acceleration, to half the contract. The quarter of a second just before the gap is left
+//               out: what went wrong may have begun before it was noticed; or
+//           (c) the quay map confirms the joints of frames within the trial (frame_done); or
 //           (d) a re-acquire edge says that a person has checked them.
-//           Samples that follow what was refused by its motion are no motion of the machine: (b) is out.
-// So what is within reach never grows with time. At the start, as after an edge, the first values in range
-// are believed; a gap before they have lasted half a second, when nothing can have become of them yet, is a
-// start again. SI units. No failure but the verdict. Thread rule: one owner. Cost: that of two JointTracks.
+//           (b) does not apply to a trial that began with samples refused by their motion.
+// So a refused value does not become plausible because time passes. After the start or a re-acquire edge the
+// first values in range are believed; a gap before these have lasted half a second counts as a new start.
+// SI units. No failure but the verdict. Thread rule: one owner. Cost: that of two JointTracks.
 #pragma once
 
 #include <array>
@@ -31,7 +30,7 @@
 
 namespace hulltrack {
 
-/// What one joint can do, m or rad and per second.
+/// What one joint can do: m or rad, max_rate per second.
 struct JointLimits {
   double min = 0.0;
   double max = 0.0;
@@ -59,13 +58,12 @@ class JointGate {
     Verdict verdict = Verdict::no_news;
     Faults faults = 0;        // plc_value while the newest values are not believed
     std::string reason;       // why not, with joint and figures; empty otherwise
-    bool needs_edge = false;  // neither (a) nor (b) can come true any more
+    bool needs_edge = false;  // neither (a) nor (b) can come true any more: only (c) or (d)
   };
 
   explicit JointGate(const JointGateConfig& config);
 
-  /// Whether `reading` is more than the last one again: its heartbeat moved (where the PLC has one), and it
-  /// is later.
+  /// Whether `reading` is new: later than the last one, and with another heartbeat (where the PLC has one).
   [[nodiscard]] bool is_news(const JointReading& reading) const;
 
   /// Judges the next reading; readings come in order of time (an earlier one is no news).
@@ -74,9 +72,10 @@ class JointGate {
   /// Re-acquire edge: forgets everything, so that the next values in range are believed.
   void reacquire();
 
-  /// A frame measured in [first, last] is done; `confirmed`: the quay map confirms its joints on all six
-  /// axes. Five in a row within a trial end it: were one in a hundred confirmed by chance, that would happen
-  /// once in 10^10 frames, and a shift of waiting has 3 * 10^5.
+  /// To be called for each frame, measured in [first, last]. `confirmed`: the quay map confirms its joints on
+  /// all six axes. Five such frames in a row within a trial end it and its values are believed. If one frame
+  /// in a hundred were confirmed by chance, that would happen by chance once in 10^10 frames; a shift of
+  /// waiting has 3 * 10^5.
   void frame_done(MeasurementTime first, MeasurementTime last, bool confirmed);
 
  private:
@@ -88,10 +87,10 @@ class JointGate {
   };
   struct Trial {
     JointTrack track;
-    bool contradicts = false;   // follows values that were refused by their motion
-    bool at_old_place = false;  // every sample is where the joints stood before
+    bool contradicts = false;   // began with values that were refused by their motion
+    bool at_old_place = false;  // (a) may still come true: every sample is where the joints stood before
     bool fits_motion = false;   // (b) may still come true
-    int confirmed = 0;          // frames in a row
+    int confirmed = 0;          // confirmed frames in a row
   };
 
   [[nodiscard]] Outcome judge(const JointSample& sample);
@@ -112,7 +111,7 @@ class JointGate {
   JointGateConfig config_;
   std::array<Joint, 3> joints_;
   JointTrack believed_;
-  bool established_ = false;  // what is believed has lasted, or came out of a trial
+  bool established_ = false;  // the believed samples span half a second, or came out of a trial
   Trial trial_;
   std::optional<JointReading> last_;
   Outcome last_outcome_;
