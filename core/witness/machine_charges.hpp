@@ -42,6 +42,9 @@ struct MachineCharge {
 
 class MachineCharges {
  public:
+  /// Frames in a row, to charge and to acquit: one frame may be wrong about the quay.
+  static constexpr int kNeeded = 3;
+
   [[nodiscard]] bool any() const;
   /// The text of the newest charge, or of another if that has been dropped; empty without charges.
   [[nodiscard]] std::string reason() const;
@@ -54,15 +57,18 @@ class MachineCharges {
   /// The charge of kind `Wrong`, which is not WrongJoint; nothing if there is none.
   template <typename Wrong>
   [[nodiscard]] std::optional<Wrong> charged() const {
-    const auto& charge = slots_.at(slot_of<Wrong>());
-    return charge ? std::optional(std::get<Wrong>(charge->what)) : std::nullopt;
+    const auto& slot = slots_.at(slot_of<Wrong>());
+    return slot ? std::optional(std::get<Wrong>(slot->charge.what)) : std::nullopt;
   }
 
-  void drop(JointName joint) { slots_.at(static_cast<std::size_t>(joint)).reset(); }
+  /// A frame's word on a charge: the last of kNeeded frames in a row that refute it drops it.
+  void hear(JointName joint, bool refuted) { hear_at(static_cast<std::size_t>(joint), refuted); }
   template <typename Wrong>
-  void drop() {
-    slots_.at(slot_of<Wrong>()).reset();
+  void hear(bool refuted) {
+    hear_at(slot_of<Wrong>(), refuted);
   }
+  /// A frame that refutes no charge.
+  void refute_none();
   void drop_all() { slots_ = {}; }
 
  private:
@@ -74,7 +80,13 @@ class MachineCharges {
     return slot({.reason = {}, .what = Wrong{}});
   }
 
-  std::array<std::optional<MachineCharge>, 6> slots_;
+  void hear_at(std::size_t slot, bool refuted);
+
+  struct Slot {
+    MachineCharge charge;
+    int refuted = 0;  // frames in a row
+  };
+  std::array<std::optional<Slot>, 6> slots_;
   std::size_t newest_ = 0;  // slot of the charge that was added last
   std::size_t asked_ = 0;   // joint that next_joint() gave last
 };

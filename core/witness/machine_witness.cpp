@@ -9,8 +9,6 @@
 namespace hulltrack {
 namespace {
 
-constexpr int kNeeded = 3;  // frames in a row, to charge and to acquit: one may be wrong about the quay
-
 // The machine must have stood for this long before a frame counts as seen at rest. Observations are up to 1 s
 // old (10 frames at 10 Hz), and a boom swings out for a while: half as long again.
 constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
@@ -99,13 +97,13 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     }
   }
   note_rest(time, stand, verdict);
-  if (verdict.known) {
-    charges_in_a_row_ = verdict.charge ? charges_in_a_row_ + 1 : 0;
-    clean_in_a_row_ = verdict.charge ? 0 : clean_in_a_row_ + 1;
-  }
-  if (verdict.charge && charges_in_a_row_ >= kNeeded) {
-    charges_.add(*verdict.charge);
-  } else if (verdict.known && clean_in_a_row_ >= kNeeded) {
+  if (verdict.known && verdict.charge) {
+    charges_.refute_none();
+    if (++charges_in_a_row_ >= MachineCharges::kNeeded) {
+      charges_.add(*verdict.charge);
+    }
+  } else if (verdict.known) {
+    charges_in_a_row_ = 0;
     acquit(stand, verdict, asked);
   }
   return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
@@ -266,29 +264,25 @@ void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, 
   }
 }
 
-/// Drops charges that this frame would have shown and does not show; of the joints' charges only `asked`. A
-/// charge stays if wear could now explain the amount: such a frame would not have shown it.
+/// Tells each charge whether this frame, in which the quay is in place, refutes it; of the joints' charges
+/// only `asked`. A frame in which wear could explain the amount would not have shown it, and refutes nothing.
 void MachineWitness::acquit(const MachineStand& stand, const Verdict& verdict,
                             const std::optional<WrongJoint>& asked) {
-  if (asked && (verdict.refutes_asked ||
-                refutes(verdict.doubt.joints.at(static_cast<std::size_t>(asked->joint)), asked->amount))) {
-    charges_.drop(asked->joint);
+  if (asked) {
+    charges_.hear(asked->joint, verdict.refutes_asked ||
+                                    refutes(verdict.doubt.joints.at(static_cast<std::size_t>(asked->joint)),
+                                            asked->amount));
   }
-  if (const auto latency = charges_.charged<WrongLatency>();
-      latency && at_rest_ && seen_.holds_all() &&
-      refutes(doubt_latency(machine_, stand, seen_, *at_rest_), latency->older)) {
-    charges_.drop<WrongLatency>();
+  if (const auto latency = charges_.charged<WrongLatency>()) {
+    charges_.hear<WrongLatency>(at_rest_ && seen_.holds_all() &&
+                                refutes(doubt_latency(machine_, stand, seen_, *at_rest_), latency->older));
   }
   if (const auto place = charges_.charged<WrongPlace>()) {
     const Twist off = about_point(seen_.centre_W - stand.sensor_W,
                                   carried_by_boom(machine_, place->stand, stand, place->off));
-    if (refutes(doubt_twist(machine_, stand, seen_, off, doubt_of_reference()))) {
-      charges_.drop<WrongPlace>();
-    }
+    charges_.hear<WrongPlace>(refutes(doubt_twist(machine_, stand, seen_, off, doubt_of_reference())));
   }
-  if (charges_.charged<WrongAltogether>() && seen_.holds_all()) {
-    charges_.drop<WrongAltogether>();
-  }
+  charges_.hear<WrongAltogether>(seen_.holds_all());
 }
 
 void MachineWitness::remember(const QuaySighting& sighting) {
@@ -328,7 +322,7 @@ void MachineWitness::forget_sight() {
   }
   planes_ = {};
   charges_in_a_row_ = 0;
-  clean_in_a_row_ = 0;
+  charges_.refute_none();
 }
 
 void MachineWitness::forget() {

@@ -102,7 +102,6 @@ class MachineWitness {
   /// What was seen when the machine last stood: lateness is measured against it.
   std::optional<Misplacement> at_rest_;
   int charges_in_a_row_ = 0;  // frames
-  int clean_in_a_row_ = 0;    // frames
   MachineCharges charges_;
 };
 

@@ -11,6 +11,19 @@ const MachineCharge kLate{"values are late", WrongLatency{0.2}};
 const MachineCharge kPlace{"a mount is off", WrongPlace{}};
 const MachineCharge kAltogether{"the quay is seen through", WrongAltogether{}};
 
+template <typename Wrong>
+void refute(MachineCharges& charges) {
+  for (int i = 0; i < MachineCharges::kNeeded; ++i) {
+    charges.hear<Wrong>(true);
+  }
+}
+
+void refute(MachineCharges& charges, JointName joint) {
+  for (int i = 0; i < MachineCharges::kNeeded; ++i) {
+    charges.hear(joint, true);
+  }
+}
+
 TEST(MachineCharges, EachIsDroppedByItself) {
   MachineCharges charges;
   EXPECT_FALSE(charges.any());
@@ -19,17 +32,38 @@ TEST(MachineCharges, EachIsDroppedByItself) {
     charges.add(charge);
   }
   EXPECT_EQ(charges.reason(), "a mount is off");
-  charges.drop<WrongPlace>();
+  refute<WrongPlace>(charges);
   EXPECT_FALSE(charges.charged<WrongPlace>());
   EXPECT_TRUE(charges.charged<WrongLatency>());
   EXPECT_TRUE(charges.charged<WrongAltogether>());
-  charges.drop<WrongAltogether>();
-  charges.drop<WrongLatency>();
-  charges.drop(JointName::slew);
+  refute<WrongAltogether>(charges);
+  refute<WrongLatency>(charges);
+  refute(charges, JointName::slew);
   EXPECT_TRUE(charges.any());
   EXPECT_EQ(charges.reason(), "travel is off");
-  charges.drop(JointName::travel);
+  refute(charges, JointName::travel);
   EXPECT_FALSE(charges.any());
+}
+
+TEST(MachineCharges, FramesThatRefuteItHaveToFollowEachOther) {
+  MachineCharges charges;
+  charges.add(kTravel);
+  charges.add(kPlace);
+  for (const bool refuted : {true, true, false, true, true}) {
+    charges.hear(JointName::travel, refuted);
+    charges.hear<WrongPlace>(refuted);
+  }
+  charges.refute_none();
+  charges.hear(JointName::travel, true);
+  charges.hear(JointName::travel, true);
+  EXPECT_TRUE(charges.next_joint()) << "neither what refutes nothing nor another charge is passed over";
+  charges.add(kTravel);
+  charges.hear(JointName::travel, true);
+  EXPECT_TRUE(charges.next_joint()) << "charged anew";
+  charges.hear(JointName::travel, true);
+  charges.hear(JointName::travel, true);
+  EXPECT_FALSE(charges.next_joint());
+  EXPECT_TRUE(charges.charged<WrongPlace>());
 }
 
 TEST(MachineCharges, ANewOneReplacesThatOfTheSameJointOrKindOnly) {

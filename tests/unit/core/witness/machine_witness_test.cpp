@@ -200,6 +200,14 @@ TEST(MachineWitness, AnAcquittalNeedsAsManySightsAsACharge) {
   EXPECT_EQ(frames.run(1, {}).faults, 0);
 }
 
+TEST(MachineWitness, SightsThatWouldNotHaveShownItDoNotCountForAnAcquittal) {
+  Frames frames;
+  frames.run(20, {0.3, 0.0, 0.0});
+  EXPECT_NE(frames.run(30, {}, {0}).faults, 0) << "of the top alone nobody sees a wrong travel";
+  EXPECT_NE(frames.run(2, {}).faults, 0) << "two may be wrong";
+  EXPECT_EQ(frames.run(8, {}).faults, 0);
+}
+
 TEST(MachineWitness, AJointIsNotAcquittedBecauseAnotherOneIsCharged) {
   Frames frames;
   frames.run(20, {0.3, 0.0, 0.0});
