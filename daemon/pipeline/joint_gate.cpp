@@ -132,7 +132,6 @@ JointGate::Outcome JointGate::try_out(const JointSample& sample) {
 }
 
 void JointGate::begin_trial(const JointSample& sample, bool contradicts) {
-  trial_.contradicts = contradicts;
   trial_.at_old_place = believed_.stands_still(kSamePlace);
   trial_.fits_motion = !contradicts && sample.time - believed_.newest_time() < kLongestBridge;
   continue_trial(sample);

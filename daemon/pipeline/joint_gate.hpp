@@ -87,7 +87,6 @@ class JointGate {
   };
   struct Trial {
     JointTrack track;
-    bool contradicts = false;   // began with values that were refused by their motion
     bool at_old_place = false;  // (a) may still come true: every sample is where the joints stood before
     bool fits_motion = false;   // (b) may still come true
     int confirmed = 0;          // confirmed frames in a row
