@@ -211,26 +211,46 @@ std::vector<std::uint8_t> Relief::open_tiles() const {
 void Relief::find_horizons() {
   horizon_.assign(top_.size(), kNothing);
   Window<float> around(kNothing);
-  // The horizon of a cell; kNothing if one direction has no point within kReach.
-  const auto lowest = [&around](Cell from) {
-    float least = kNowhere;
-    for (const auto& [dc, dr] : kDirections) {
-      const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * kCell : kCell;
-      const int steps = static_cast<int>(kReach / stride);
-      float highest = kNothing;
-      for (int i = 1; i <= steps; ++i) {
-        const Cell c{from.column + i * dc, from.row + i * dr};
-        if (!around.holds(c)) {
-          break;
-        }
-        highest = std::max(highest, around.of(c));
-      }
-      if (highest == kNothing) {
-        return kNothing;
-      }
-      least = std::min(least, highest);
+  // Lowers the horizons of a line of the tile's cells to what they see along it; kNothing without a point
+  // within kReach. The line has n cells inside of the tile. Cell i of it sees the cells behind it in the
+  // tile, all cells from n to `steps` after the line's first, which every cell of the line sees, and i cells
+  // more.
+  const auto lower_along = [&](std::size_t tile, Cell first, int dc, int dr) {
+    const auto inside = [](int v) { return v >= 0 && v < kTile; };
+    const auto seen = [&](int i) {
+      return around.at(
+          {corners_[tile].column + first.column + i * dc, corners_[tile].row + first.row + i * dr});
+    };
+    const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * kCell : kCell;
+    const int steps = static_cast<int>(kReach / stride);
+    int n = 1;
+    while (inside(first.column + n * dc) && inside(first.row + n * dr)) {
+      ++n;
     }
-    return least;
+    const auto horizon = [&](int i) -> float& {
+      return horizon_[tile * kTileCells + in_tile({first.column + i * dc, first.row + i * dr})];
+    };
+    bool any = false;
+    for (int i = 0; i < n; ++i) {
+      any = any || horizon(i) != kNothing;
+    }
+    if (!any) {
+      return;
+    }
+    float common = kNothing;
+    for (int i = n; i <= steps; ++i) {
+      common = std::max(common, seen(i));
+    }
+    std::array<float, kTile> behind;
+    behind[static_cast<std::size_t>(n - 1)] = kNothing;
+    for (int i = n - 1; i > 0; --i) {
+      behind[static_cast<std::size_t>(i - 1)] = std::max(behind[static_cast<std::size_t>(i)], seen(i));
+    }
+    float more = kNothing;
+    for (int i = 0; i < n; ++i) {
+      more = i > 0 ? std::max(more, seen(steps + i)) : more;
+      horizon(i) = std::min(horizon(i), std::max({common, behind[static_cast<std::size_t>(i)], more}));
+    }
   };
   const std::vector<std::uint8_t> open = open_tiles();
   for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
@@ -238,10 +258,18 @@ void Relief::find_horizons() {
       continue;
     }
     look_around(top_, tile, kFarTiles, around);
-    for (int row = 0; row < kTile; ++row) {
-      for (int column = 0; column < kTile; ++column) {
-        const Cell c{corners_[tile].column + column, corners_[tile].row + row};
-        horizon_[tile * kTileCells + in_tile(c)] = lowest(c);
+    std::fill_n(horizon_.begin() + static_cast<std::ptrdiff_t>(tile * kTileCells), kTileCells, kNowhere);
+    for (const auto& [dc, dr] : kDirections) {
+      for (int i = 0; i < kTile; ++i) {
+        // Lines begin at the tile's edge that looks against the direction, a diagonal one's at two edges.
+        const int edge_column = dc > 0 ? 0 : kTile - 1;
+        const int edge_row = dr > 0 ? 0 : kTile - 1;
+        if (dc != 0) {
+          lower_along(tile, {edge_column, i}, dc, dr);
+        }
+        if (dr != 0 && (dc == 0 || i != edge_column)) {
+          lower_along(tile, {i, edge_row}, dc, dr);
+        }
       }
     }
   }

@@ -3,6 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
 
 namespace hulltrack {
 namespace {
@@ -51,6 +57,60 @@ Cloud ship(bool floor = true) {
   add_walls(cloud, -19.0F, -15.0F, -8.0F, 8.0F, 0.0F, 8.0F);
   add_level(cloud, -19.0F, -15.0F, -8.0F, 8.0F, 8.0F);
   return cloud;
+}
+
+/// The horizon of p's cell by its definition, cell after cell; nothing if one direction has no point.
+std::optional<float> horizon_by_definition(const std::map<std::pair<int, int>, float>& tops, int column,
+                                           int row) {
+  float least = std::numeric_limits<float>::infinity();
+  for (const auto& [dc, dr] : std::vector<std::pair<int, int>>{
+           {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) {
+    const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * Relief::kCell : Relief::kCell;
+    std::optional<float> highest;
+    for (int i = 1; i <= static_cast<int>(Relief::kReach / stride); ++i) {
+      if (const auto top = tops.find({column + i * dc, row + i * dr}); top != tops.end()) {
+        highest = std::max(highest.value_or(top->second), top->second);
+      }
+    }
+    if (!highest) {
+      return std::nullopt;
+    }
+    least = std::min(least, *highest);
+  }
+  return least;
+}
+
+TEST(Relief, AHorizonIsTheLeastOfTheHighestInEightDirections) {
+  std::mt19937 random(5);
+  std::size_t pits = 0;
+  for (const int points : {200, 1000, 5000}) {
+    std::uniform_real_distribution<float> along(0.0F, 45.0F);
+    std::uniform_real_distribution<float> up(0.0F, 9.0F);
+    Cloud cloud = {Point::Zero()};
+    std::map<std::pair<int, int>, float> tops = {{{0, 0}, 0.0F}};
+    for (int i = 0; i < points; ++i) {
+      const Point p(along(random), along(random), up(random));
+      cloud.push_back(p);
+      float& top =
+          tops.try_emplace({static_cast<int>(p.x() / Relief::kCell), static_cast<int>(p.y() / Relief::kCell)},
+                           p.z())
+              .first->second;
+      top = std::max(top, p.z());
+    }
+    const Relief relief(cloud);
+    for (int column = 0; column < 180; ++column) {
+      for (int row = 0; row < 180; ++row) {
+        const auto horizon = horizon_by_definition(tops, column, row);
+        const float z = horizon.value_or(0.0F) - Relief::kDepth;
+        const Point p((static_cast<float>(column) + 0.5F) * Relief::kCell,
+                      (static_cast<float>(row) + 0.5F) * Relief::kCell, z);
+        ASSERT_EQ(relief.in_pit(p - Point(0.0F, 0.0F, 0.01F)), horizon.has_value()) << column << ", " << row;
+        ASSERT_FALSE(relief.in_pit(p + Point(0.0F, 0.0F, 0.01F))) << column << ", " << row;
+        pits += horizon ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(pits, 10000U);
 }
 
 TEST(Relief, AHoldIsAPitAndItsRimIsTheCoaming) {
