@@ -1,6 +1,7 @@
 #include "core/quay/misplacement.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -93,6 +94,23 @@ std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
 
 bool Misplacement::agrees(const QuayObservation& o) const {
   return std::abs(residual(o, centre_W, twist)) <= kAgrees;
+}
+
+std::vector<Twist> Misplacement::unheld() const {
+  Twist inverse;
+  inverse << Eigen::Vector3d::Constant(1.0 / PlaneSystem::kLever), Eigen::Vector3d::Ones();
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kDirections), 6);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    held.row(static_cast<Eigen::Index>(i)) = inverse.cwiseProduct(measured[i].direction).transpose();
+  }
+  std::vector<Twist> twists;
+  if (!holds_all()) {
+    const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(held).kernel();
+    for (Eigen::Index i = 0; i < kernel.cols(); ++i) {
+      twists.emplace_back(inverse.cwiseProduct(kernel.col(i).normalized()));
+    }
+  }
+  return twists;
 }
 
 Misplacement find_misplacement(std::span<const QuayObservation> observations) {

@@ -40,6 +40,9 @@ struct Misplacement {
   }
   /// Whether the observation is within 10 cm of where the twist puts it.
   [[nodiscard]] bool agrees(const QuayObservation& o) const;
+  /// The twists about centre_W of which nothing is measured, one for each direction that is not held: of 1 m,
+  /// or of a turn that moves as much at the lever of PlaneSystem.
+  [[nodiscard]] std::vector<Twist> unheld() const;
   static constexpr std::size_t kDirections = 6;
   [[nodiscard]] bool holds_all() const { return measured.size() == kDirections; }
 };

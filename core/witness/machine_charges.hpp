@@ -12,6 +12,7 @@
 #include <string>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "core/witness/machine_wear.hpp"
 
@@ -22,15 +23,19 @@ struct WrongJoint {
   JointName joint = JointName::travel;
   double amount = 0.0;
 };
-/// Joint values that are older by `older` than plc.latency_ms says, s; negative: younger.
+/// Joint values that are older by `older` than plc.latency_ms says, s; negative: younger. `rate`: of the
+/// joints when that was seen, m/s and rad/s by JointName.
 struct WrongLatency {
   double older = 0.0;
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();
 };
 /// A sensor that is off by the twist `off` about its own position, because of its mount or several joints.
 /// `stand`: of the machine when that was seen.
 struct WrongPlace {
   MachineStand stand;
   Twist off = Twist::Zero();
+  std::vector<Twist>
+      unheld;  // about the sensor's position, as Misplacement::unheld(): what was not seen of it
 };
 /// A machine that is so far off that the scan does not tell by how much: it sees through the quay's surfaces.
 struct WrongAltogether {};

@@ -39,10 +39,18 @@ std::optional<QuayPlane> known_top(const QuayConfig& quay) {
   return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
 }
 
-/// Whether a frame would have shown what is charged (wear hides less) and shows less than half of it: what is
-/// seen is then nearer to no error than to the charge. `left`: what is seen, in the unit of `charged`.
+/// Whether a frame shows that what is charged is gone: what is seen, and all of what wear may take away from
+/// it, are together less than the charge. `left`: what is seen, in the unit of `charged`.
 bool refutes(const JointDoubt& left, double charged = 1.0) {
-  return left.hidden < std::abs(charged) && left.reads_too_much / charged < 0.5;
+  return left.reads_too_much / charged + left.hidden / std::abs(charged) < 1.0;
+}
+
+Eigen::Vector3d rate_of(const MachineStand& stand) {
+  return {stand.rate.d_x, stand.rate.theta_r, stand.rate.theta_p};
+}
+
+Eigen::Array<bool, 3, 1> moving(const Eigen::Vector3d& rate) {
+  return rate.array().abs() > kStandsBelow.array();
 }
 
 float extent(const std::deque<Point>& points) {
@@ -96,6 +104,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
       confirmed = confirmed && finds_large;
     }
   }
+  note_speed(time, stand);
   note_rest(time, stand, verdict);
   if (verdict.known && verdict.charge) {
     charges_.refute_none();
@@ -104,7 +113,9 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     }
   } else if (verdict.known) {
     charges_in_a_row_ = 0;
-    acquit(stand, verdict, asked);
+    acquit(time, stand, verdict, asked);
+  } else if (asked) {
+    charges_.hear(asked->joint, false);
   }
   return {charges_.any() ? fault::plc_value : Faults{0}, charges_.reason(), confirmed, verdict.doubt.joints};
 }
@@ -160,8 +171,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
     verdict.doubt = doubt_machine(machine_, stand, seen_, doubt_of_reference());
   }
   // If the quay is surely found in its place on all six axes, planes that are seen through have been removed.
-  const bool surely_in_place =
-      found && !verdict.doubt.beyond_class && seen_.holds_all() && agreeing >= kSureShare;
+  const bool surely_in_place = found && !verdict.doubt.beyond_class && seen_.holds_all() && is_surely_found();
   std::string through = surely_in_place ? std::string{} : seen_through();
   verdict.known = found || !through.empty();
   if (!through.empty()) {
@@ -188,13 +198,16 @@ std::optional<MachineCharge> MachineWitness::charge_of_lateness(const MachineSta
       format_text("the quay moves with the machine as if joint values were %.0f ms %s than plc.latency_ms "
                   "says",
                   1e3 * std::abs(late.reads_too_much), late.reads_too_much > 0.0 ? "older" : "younger"),
-      WrongLatency{late.reads_too_much}};
+      WrongLatency{late.reads_too_much, rate_of(stand)}};
 }
 
 MachineCharge MachineWitness::charge_by(const MachineStand& stand, const MachineDoubt& doubt,
                                         const Misplacement& seen) const {
-  MachineCharge charge{(learner_ ? kSinceFound : "") + describe(doubt, seen),
-                       WrongPlace{stand, seen.about(stand.sensor_W)}};
+  WrongPlace place{stand, seen.about(stand.sensor_W), seen.unheld()};
+  for (Twist& twist : place.unheld) {
+    twist = about_point(stand.sensor_W - seen.centre_W, twist);
+  }
+  MachineCharge charge{(learner_ ? kSinceFound : "") + describe(doubt, seen), std::move(place)};
   if (doubt.accused) {
     charge.what =
         WrongJoint{*doubt.accused, doubt.joints.at(static_cast<std::size_t>(*doubt.accused)).reads_too_much};
@@ -211,7 +224,8 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const std::op
   std::optional<Verdict> of_elsewhere = elsewhere ? judge(stand, *elsewhere) : std::nullopt;
   if (asked) {
     const QuaySearch::There there = search_.look_there(*map_, machine_, asked->joint, asked->amount);
-    verdict.refutes_asked = there.refuted;
+    // That the charged amount is wrong clears the joint only if another amount would have been found.
+    verdict.refutes_asked = there.refuted && search_.would_find(asked->joint);
     if (of_elsewhere && elsewhere->surplus > there.surplus) {
       verdict = std::move(*of_elsewhere);
       return;
@@ -253,8 +267,7 @@ std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand&
 /// Keeps what is seen as the sight at rest, if the machine has stood for kAtRest (then all observations are
 /// of a standing machine), the frame has no complaint and all six directions are held.
 void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict) {
-  const Eigen::Vector3d rate(stand.rate.d_x, stand.rate.theta_r, stand.rate.theta_p);
-  if ((rate.cwiseAbs().array() > kStandsBelow.array()).any()) {
+  if (moving(rate_of(stand)).any()) {
     standing_since_.reset();
     return;
   }
@@ -265,8 +278,8 @@ void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, 
 }
 
 /// Tells each charge whether this frame, in which the quay is in place, refutes it; of the joints' charges
-/// only `asked`. A frame in which wear could explain the amount would not have shown it, and refutes nothing.
-void MachineWitness::acquit(const MachineStand& stand, const Verdict& verdict,
+/// only `asked`. A frame in which wear could explain the amount refutes nothing.
+void MachineWitness::acquit(MeasurementTime time, const MachineStand& stand, const Verdict& verdict,
                             const std::optional<WrongJoint>& asked) {
   if (asked) {
     charges_.hear(asked->joint, verdict.refutes_asked ||
@@ -274,15 +287,51 @@ void MachineWitness::acquit(const MachineStand& stand, const Verdict& verdict,
                                             asked->amount));
   }
   if (const auto latency = charges_.charged<WrongLatency>()) {
-    charges_.hear<WrongLatency>(at_rest_ && seen_.holds_all() &&
-                                refutes(doubt_latency(machine_, stand, seen_, *at_rest_), latency->older));
+    charges_.hear<WrongLatency>(refutes_latency(time, stand, *latency));
   }
   if (const auto place = charges_.charged<WrongPlace>()) {
-    const Twist off = about_point(seen_.centre_W - stand.sensor_W,
-                                  carried_by_boom(machine_, place->stand, stand, place->off));
-    charges_.hear<WrongPlace>(refutes(doubt_twist(machine_, stand, seen_, off, doubt_of_reference())));
+    charges_.hear<WrongPlace>(refutes_place(stand, *place));
   }
-  charges_.hear<WrongAltogether>(seen_.holds_all());
+  charges_.hear<WrongAltogether>(seen_.holds_all() && is_surely_found());
+}
+
+/// While the joints that moved when it was charged move again, and have not changed their speed for as long
+/// as observations are kept: older ones would be held against a speed that was not theirs.
+bool MachineWitness::refutes_latency(MeasurementTime time, const MachineStand& stand,
+                                     const WrongLatency& charged) const {
+  const bool the_same_move = (moving(rate_of(stand)) || !moving(charged.rate)).all();
+  const bool steady = steady_ && time - steady_->since >= kAtRest;
+  return the_same_move && steady && at_rest_ && seen_.holds_all() &&
+         refutes(doubt_latency(machine_, stand, seen_, *at_rest_), charged.older);
+}
+
+/// What is wrong may be carried by the boom, as a mount is, or stay as it is in W, as a wrong travel does:
+/// both have to be refuted. What was not seen of it may be anything.
+bool MachineWitness::refutes_place(const MachineStand& stand, const WrongPlace& charged) const {
+  const auto is_gone = [&](const auto& now) {
+    std::vector<Twist> unsure = doubt_of_reference();
+    for (const Twist& twist : charged.unheld) {
+      unsure.push_back(now(twist));
+    }
+    return refutes(doubt_twist(machine_, stand, seen_, now(charged.off), unsure));
+  };
+  return is_gone([&](const Twist& off) {
+           return about_point(seen_.centre_W - stand.sensor_W,
+                              carried_by_boom(machine_, charged.stand, stand, off));
+         }) &&
+         is_gone([&](const Twist& off) { return about_point(seen_.centre_W - charged.stand.sensor_W, off); });
+}
+
+/// Most observations agree: hardly any of them can be of something else than the quay.
+bool MachineWitness::is_surely_found() const {
+  return double(seen_.agreeing) >= kSureShare * double(seen_.observations);
+}
+
+void MachineWitness::note_speed(MeasurementTime time, const MachineStand& stand) {
+  const Eigen::Vector3d rate = rate_of(stand);
+  if (!steady_ || moving(rate - steady_->rate).any()) {
+    steady_ = {time, rate};
+  }
 }
 
 void MachineWitness::remember(const QuaySighting& sighting) {
@@ -314,6 +363,7 @@ std::string MachineWitness::seen_through() const {
 
 void MachineWitness::forget_sight() {
   standing_since_.reset();
+  steady_.reset();
   at_rest_.reset();
   sight_.forget();
   search_.forget();

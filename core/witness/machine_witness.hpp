@@ -1,9 +1,9 @@
 // Does the quay contradict the machine, that is its joints, mounts and latency?
 //
 // Each frame is judged by what the scan sees of the quay. Three frames in a row with a complaint make a
-// charge (machine_charges.hpp). While any charge stands health is 0. A charge is dropped after three clean
-// frames in a row, if the last one would have shown what is charged and shows less than half of it, or by a
-// re-acquire edge. Three frames, because one may be wrong about the quay. A frame that sees too little of the
+// charge (machine_charges.hpp). While any charge stands health is 0. A charge is dropped after three frames in
+// a row, each of which shows that what is charged is gone, whatever wear may hide, or by a re-acquire edge.
+// Three frames, because one may be wrong about the quay. A frame that sees too little of the
 // quay changes nothing.
 //
 // Input: the filtered scan, its views, and where the machine stands. Output: MachineFinding. Frame W; metres,
@@ -71,12 +71,18 @@ class MachineWitness {
   [[nodiscard]] Verdict judge(const MachineStand& stand) const;
   [[nodiscard]] std::optional<Verdict> judge(const MachineStand& stand,
                                              const QuaySearch::Elsewhere& elsewhere) const;
-  void acquit(const MachineStand& stand, const Verdict& verdict, const std::optional<WrongJoint>& asked);
+  void acquit(MeasurementTime time, const MachineStand& stand, const Verdict& verdict,
+              const std::optional<WrongJoint>& asked);
+  [[nodiscard]] bool refutes_latency(MeasurementTime time, const MachineStand& stand,
+                                     const WrongLatency& charged) const;
+  [[nodiscard]] bool refutes_place(const MachineStand& stand, const WrongPlace& charged) const;
+  [[nodiscard]] bool is_surely_found() const;
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineStand& stand, const MachineDoubt& doubt,
                                         const Misplacement& seen) const;
   void weigh_other_places(const MachineStand& stand, const std::optional<WrongJoint>& asked,
                           Verdict& verdict);
+  void note_speed(MeasurementTime time, const MachineStand& stand);
   void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();
@@ -101,6 +107,12 @@ class MachineWitness {
   std::optional<MeasurementTime> standing_since_;
   /// What was seen when the machine last stood: lateness is measured against it.
   std::optional<Misplacement> at_rest_;
+  /// Since when no joint has changed its speed, and the speeds, m/s and rad/s by JointName.
+  struct Steady {
+    MeasurementTime since;
+    Eigen::Vector3d rate;
+  };
+  std::optional<Steady> steady_;
   int charges_in_a_row_ = 0;  // frames
   MachineCharges charges_;
 };

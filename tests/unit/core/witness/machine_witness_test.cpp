@@ -238,6 +238,12 @@ TEST(MachineWitness, JointValuesThatComeLateShowWhileTheMachineTravels) {
   EXPECT_EQ(finding.faults, fault::plc_value);
   EXPECT_NE(finding.reason.find("older than plc.latency_ms"), std::string::npos) << finding.reason;
   EXPECT_NE(frames.run(20, {}).faults, 0) << "at rest nobody sees how late they are";
+  EXPECT_NE(frames.run(25, {}, {0, 1, 2}, {0.0, radians(2.0), 0.0}).faults, 0) << "those of another joint";
+  EXPECT_NE(frames.run(20, {}).faults, 0);
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_NE(frames.run(1, late_by(0.25), {0, 1, 2}, travelling).faults, 0)
+        << "most of what is seen is of the rest";
+  }
   EXPECT_EQ(frames.run(20, late_by(0.01), {0, 1, 2}, travelling).faults, 0) << "they are in time again";
 }
 
