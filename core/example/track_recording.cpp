@@ -2,9 +2,13 @@
 //
 // FOLDER holds lidar.pcap, plc.csv and hull.pcd, as `hulltrack record` and `hulltrack simulate` write them.
 // Machine and LiDAR are those of the simulator's default berth: put yours in their place. Unlike the service
-// this takes every joint value as the PLC gives it, and has no quay to hold the machine against.
+// this takes every joint value as the PLC gives it. Exit 0 if there was a frame.
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/io/map_file.hpp"
 #include "core/io/plc_csv.hpp"
@@ -52,9 +56,11 @@ int main(int argc, char** argv) {
     joints.add(
         {measurement_time_from_ns(row.t_ns), {row.d_x, radians(row.theta_r_deg), radians(row.theta_p_deg)}});
   }
+  int frames = 0;
   const auto track = [&] {
     for (Scan scan; scans->take(scan);) {
       const TrackResult hull = tracker.process(scan, joints, FrameInputs{});
+      ++frames;
       std::printf("frame %u: health %d, moved by %.3f %.3f %.3f m  %s\n", hull.frame, hull.health ? 1 : 0,
                   hull.displacement.x(), hull.displacement.y(), hull.displacement.z(), hull.reason.c_str());
     }
@@ -68,4 +74,5 @@ int main(int argc, char** argv) {
   }
   scans->finish();
   track();
+  return frames > 0 ? 0 : fail("no frame in " + (folder / "lidar.pcap").string());
 }

@@ -1,10 +1,10 @@
 // Does the quay contradict the machine, that is its joints, mounts and latency?
 //
 // Each frame is judged by what the scan sees of the quay. Three frames in a row with a complaint make a
-// charge (machine_charges.hpp). While any charge stands health is 0. A charge is dropped after three frames in
-// a row, each of which shows that what is charged is gone, whatever wear may hide, or by a re-acquire edge.
-// Three frames, because one may be wrong about the quay. A frame that sees too little of the
-// quay changes nothing.
+// charge (machine_charges.hpp). While any charge stands health is 0. A charge is dropped after three frames
+// in a row, each of which shows that what is charged is gone, whatever wear may hide, or by a re-acquire
+// edge. Three frames, because one may be wrong about the quay. A frame that sees too little of the quay
+// changes nothing.
 //
 // Input: the filtered scan, its views, and where the machine stands. Output: MachineFinding. Frame W; metres,
 // radians. Thread rule: one owner. Cost: 0.4 ms a frame, 0.7 ms while a charge stands, whatever the map's
