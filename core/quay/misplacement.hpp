@@ -40,6 +40,8 @@ struct Misplacement {
   }
   /// Whether the observation is within 10 cm of where the twist puts it.
   [[nodiscard]] bool agrees(const QuayObservation& o) const;
+  /// E itself, as far as it is known.
+  [[nodiscard]] Pose pose() const { return pose_about(centre_W, so3_exp(twist.head<3>()), twist.tail<3>()); }
   /// The twists about centre_W of which nothing is measured, one for each direction that is not held: of 1 m,
   /// or of a turn that moves as much at the lever of PlaneSystem.
   [[nodiscard]] std::vector<Twist> unheld() const;

@@ -33,12 +33,12 @@ bool beneath_or_above(const Box& area_W, const Point& p) {
 }  // namespace
 
 const QuaySighting& QuaySight::look_for(const QuayMap& map, const FilteredScan& scan,
-                                        std::span<const ScanView> views) {
+                                        std::span<const ScanView> views, const Pose& E) {
   begin_frame(scan, kLookedUp);
   seen_.observed = &observer_.observe(map, returns_W_, kReturnsOf);
   for (const ScanView& view : views) {
     for (std::size_t surface = 0; surface < QuayMap::kClasses; ++surface) {
-      look_through(map, surface, view);
+      look_through(map, surface, view, E.cast<float>());
     }
   }
   return seen_;
@@ -89,7 +89,8 @@ void QuaySight::begin_frame(const FilteredScan& scan, std::size_t most) {
 }
 
 /// Counts the map's planes of one class that one LiDAR's rays reached, and those that they passed through.
-void QuaySight::look_through(const QuayMap& map, std::size_t surface, const ScanView& view) {
+void QuaySight::look_through(const QuayMap& map, std::size_t surface, const ScanView& view,
+                             const Eigen::Isometry3f& E) {
   const Point sensor_W = view.T_W_L().translation().cast<float>();
   const Eigen::Matrix3f R_L_W = view.T_W_L().linear().transpose().cast<float>();
   std::size_t near = 0;
@@ -104,7 +105,7 @@ void QuaySight::look_through(const QuayMap& map, std::size_t surface, const Scan
     }
     for (; next < tile.count; next += stride) {
       const QuayMap::Plane& plane = map.planes()[tile.first + next];
-      const Point p_L = view.seen(plane.centre_W);
+      const Point p_L = view.seen(E * plane.centre_W);
       const float range = p_L.norm();
       if (range > kFarthest) {
         continue;

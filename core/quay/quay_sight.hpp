@@ -58,8 +58,10 @@ class QuaySight {
   explicit QuaySight(bool has_region) : has_region_(has_region) {}
 
   /// What the scan shows of the map's planes. The answer lives until the next call.
+  /// `E` moves what stands still in W to where the scan has it, as far as is known (misplacement.hpp): planes
+  /// are looked for along rays there. A worn machine's rays would miss narrow ones at their mapped place.
   [[nodiscard]] const QuaySighting& look_for(const QuayMap& map, const FilteredScan& scan,
-                                             std::span<const ScanView> views);
+                                             std::span<const ScanView> views, const Pose& E);
 
   /// What the scan shows of the quay's top, within the X and Y of `area_W` if that is given. Precondition:
   /// there is a region.
@@ -78,7 +80,8 @@ class QuaySight {
 
  private:
   void begin_frame(const FilteredScan& scan, std::size_t most);
-  void look_through(const QuayMap& map, std::size_t surface, const ScanView& view);
+  void look_through(const QuayMap& map, std::size_t surface, const ScanView& view,
+                    const Eigen::Isometry3f& E);
 
   bool has_region_;
   std::uint32_t turn_ = 0;  // number of the frame: decides which returns and planes are looked at

@@ -125,7 +125,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
 const QuaySighting* MachineWitness::sighting_of(const FilteredScan& scan, std::span<const ScanView> views,
                                                 const MachineStand& stand, bool on_trial) {
   if (map_ != nullptr) {
-    return &sight_.look_for(*map_, scan, views);
+    return &sight_.look_for(*map_, scan, views, is_found() ? seen_.pose() : Pose::Identity());
   }
   if (top_) {
     return &sight_.look_for(*top_, scan);
@@ -164,9 +164,7 @@ std::vector<Twist> MachineWitness::doubt_of_reference() const {
 
 MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   Verdict verdict;
-  const bool few = seen_.observations < kFewestObservations || seen_.measured.empty();
-  const double agreeing = double(seen_.agreeing) / std::max(1.0, double(seen_.observations));
-  const bool found = !few && agreeing >= kLeastShare;
+  const bool found = is_found();
   if (found) {
     verdict.doubt = doubt_machine(machine_, stand, seen_, doubt_of_reference());
   }
@@ -320,6 +318,11 @@ bool MachineWitness::refutes_place(const MachineStand& stand, const WrongPlace& 
                               carried_by_boom(machine_, charged.stand, stand, off));
          }) &&
          is_gone([&](const Twist& off) { return about_point(seen_.centre_W - charged.stand.sensor_W, off); });
+}
+
+bool MachineWitness::is_found() const {
+  const bool few = seen_.observations < kFewestObservations || seen_.measured.empty();
+  return !few && double(seen_.agreeing) >= kLeastShare * double(seen_.observations);
 }
 
 /// Most observations agree: hardly any of them can be of something else than the quay.

@@ -76,6 +76,7 @@ class MachineWitness {
   [[nodiscard]] bool refutes_latency(MeasurementTime time, const MachineStand& stand,
                                      const WrongLatency& charged) const;
   [[nodiscard]] bool refutes_place(const MachineStand& stand, const WrongPlace& charged) const;
+  [[nodiscard]] bool is_found() const;
   [[nodiscard]] bool is_surely_found() const;
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineStand& stand, const MachineDoubt& doubt,
