@@ -21,26 +21,33 @@ constexpr double kAgrees = 0.10;     // m, of a residual: two kernels, five sigm
 constexpr double kExplained = 0.9;   // share that agrees without wide kernels; in place 0.97 to 0.99 do
 constexpr double kMuchBetter = 1.1;  // times as many have to agree with the wide fit, or the narrow one stays
 
-/// One observation as a row of the least squares: by how much each part of a twist about the centre changes
-/// its offset.
-struct Row {
+/// One observation: by how much each part of a twist about the centre changes its offset.
+struct Lever {
   Eigen::Vector3d turn, shift;
   double offset;
-  PlaneSystem::Vector7 weighed;  // the same row in PlaneSystem's units
 
-  Row(const QuayObservation& o, const Eigen::Vector3d& centre, const PlaneSystem& system)
-      : turn((o.p_W - centre).cross(o.n_W)),
-        shift(o.n_W),
-        offset(o.offset),
-        weighed(system.jacobian(o.p_W, o.n_W, 0.0)) {}
+  Lever(const QuayObservation& o, const Eigen::Vector3d& centre)
+      : turn((o.p_W - centre).cross(o.n_W)), shift(o.n_W), offset(o.offset) {}
 
   [[nodiscard]] double residual(const Twist& twist) const {
     return offset - turn.dot(twist.head<3>()) - shift.dot(twist.tail<3>());
   }
 };
 
-double residual(const QuayObservation& o, const Eigen::Vector3d& centre, const Twist& twist) {
-  return o.offset - (o.p_W - centre).cross(o.n_W).dot(twist.head<3>()) - o.n_W.dot(twist.tail<3>());
+/// The same as a row of the least squares.
+struct Row : Lever {
+  PlaneSystem::Vector7 weighed;  // in PlaneSystem's units
+
+  Row(const QuayObservation& o, const Eigen::Vector3d& centre, const PlaneSystem& system)
+      : Lever(o, centre), weighed(system.jacobian(o.p_W, o.n_W, 0.0)) {}
+};
+
+/// Directions are compared with rotations times kLever, so that both parts of a twist are in metres: a
+/// direction of a twist in rad and m is `in_metres()` times one in metres, and its inverse takes it back.
+Twist in_metres() {
+  Twist scale;
+  scale << Eigen::Vector3d::Constant(PlaneSystem::kLever), Eigen::Vector3d::Ones();
+  return scale;
 }
 
 struct Fit {
@@ -72,9 +79,7 @@ Fit fit(std::span<const Row> rows, const Eigen::Vector3d& centre, std::span<cons
 
 /// One measurement for each direction that kFewestPairs hold.
 std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
-  // Directions are compared with rotations times kLever, so that both parts of a twist are in metres.
-  Twist scale;
-  scale << Eigen::Vector3d::Constant(PlaneSystem::kLever), Eigen::Vector3d::Ones();
+  const Twist scale = in_metres();
   const Twist inverse = scale.cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(inverse.asDiagonal() * fit.H * inverse.asDiagonal());
   std::vector<Misplacement::Measurement> measured;
@@ -93,12 +98,11 @@ std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
 }  // namespace
 
 bool Misplacement::agrees(const QuayObservation& o) const {
-  return std::abs(residual(o, centre_W, twist)) <= kAgrees;
+  return std::abs(Lever(o, centre_W).residual(twist)) <= kAgrees;
 }
 
 std::vector<Twist> Misplacement::unheld() const {
-  Twist inverse;
-  inverse << Eigen::Vector3d::Constant(1.0 / PlaneSystem::kLever), Eigen::Vector3d::Ones();
+  const Twist inverse = in_metres().cwiseInverse();
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kDirections), 6);
   for (std::size_t i = 0; i < measured.size(); ++i) {
     held.row(static_cast<Eigen::Index>(i)) = inverse.cwiseProduct(measured[i].direction).transpose();

@@ -30,12 +30,11 @@ struct WrongLatency {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
 };
 /// A sensor that is off by the twist `off` about its own position, because of its mount or several joints.
-/// `stand`: of the machine when that was seen.
 struct WrongPlace {
-  MachineStand stand;
+  MachineStand stand;  // of the machine when that was seen
   Twist off = Twist::Zero();
-  std::vector<Twist>
-      unheld;  // about the sensor's position, as Misplacement::unheld(): what was not seen of it
+  std::vector<Twist> unheld;  // what was not seen of it: Misplacement::unheld(), about the sensor's position
+  bool beyond_gate = false;   // too large to show as offsets from planes
 };
 /// A machine that is so far off that the scan does not tell by how much: it sees through the quay's surfaces.
 struct WrongAltogether {};

@@ -5,13 +5,15 @@
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "core/registration/plane_system.hpp"
 
 namespace hulltrack {
 namespace {
 
-// The machine must have stood for this long before a frame counts as seen at rest. Observations are up to 1 s
-// old (10 frames at 10 Hz), and a boom swings out for a while: half as long again.
-constexpr Nanoseconds kAtRest = std::chrono::milliseconds(1500);
+// The machine must have stood, or moved steadily, for this long before a frame counts as seen at rest, or at
+// that speed. Observations are up to 1 s old (10 frames at 10 Hz), and a boom swings out for a while: half as
+// long again.
+constexpr Nanoseconds kSteady = std::chrono::milliseconds(1500);
 
 // The quay is found if this share of the observations agree with one misplacement. Most agree if the returns
 // are the quay's. A sixth agree by chance if nothing is in its place: offsets are then spread over the gate
@@ -105,7 +107,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
     }
   }
   note_speed(time, stand);
-  note_rest(time, stand, verdict);
+  note_rest(time, verdict);
   if (verdict.known && verdict.charge) {
     charges_.refute_none();
     if (++charges_in_a_row_ >= MachineCharges::kNeeded) {
@@ -175,7 +177,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   if (!through.empty()) {
     verdict.charge = MachineCharge{std::move(through), WrongAltogether{}};
   } else if (found && verdict.doubt.beyond_class) {
-    verdict.charge = charge_by(stand, verdict.doubt, seen_);
+    verdict.charge = charge_by(stand, verdict.doubt, seen_, false);
   } else if (found) {
     verdict.charge = charge_of_lateness(stand);
   }
@@ -200,17 +202,19 @@ std::optional<MachineCharge> MachineWitness::charge_of_lateness(const MachineSta
 }
 
 MachineCharge MachineWitness::charge_by(const MachineStand& stand, const MachineDoubt& doubt,
-                                        const Misplacement& seen) const {
-  WrongPlace place{stand, seen.about(stand.sensor_W), seen.unheld()};
+                                        const Misplacement& seen, bool by_guess) const {
+  std::string reason = (learner_ ? kSinceFound : "") + describe(doubt, seen);
+  if (doubt.accused) {
+    const JointDoubt& accused = doubt.joints.at(static_cast<std::size_t>(*doubt.accused));
+    return {std::move(reason), WrongJoint{*doubt.accused, accused.reads_too_much}};
+  }
+  const double moves = PlaneSystem::kLever * seen.twist.head<3>().norm() + seen.twist.tail<3>().norm();
+  WrongPlace place{stand, seen.about(stand.sensor_W), seen.unheld(),
+                   by_guess && moves > QuaySearch::kWithinGate};
   for (Twist& twist : place.unheld) {
     twist = about_point(stand.sensor_W - seen.centre_W, twist);
   }
-  MachineCharge charge{(learner_ ? kSinceFound : "") + describe(doubt, seen), std::move(place)};
-  if (doubt.accused) {
-    charge.what =
-        WrongJoint{*doubt.accused, doubt.joints.at(static_cast<std::size_t>(*doubt.accused)).reads_too_much};
-  }
-  return charge;
+  return {std::move(reason), std::move(place)};
 }
 
 /// Lets two other places of the machine change the frame's verdict. The place that the charge against joint
@@ -221,7 +225,8 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const std::op
   const auto elsewhere = search_.look(*map_, machine_);
   std::optional<Verdict> of_elsewhere = elsewhere ? judge(stand, *elsewhere) : std::nullopt;
   if (asked) {
-    const QuaySearch::There there = search_.look_there(*map_, machine_, asked->joint, asked->amount);
+    const MachineGuess charged{.joint = asked->joint, .amount = asked->amount};
+    const QuaySearch::There there = search_.look_there(*map_, twist_of(charged, machine_, stand));
     // That the charged amount is wrong clears the joint only if another amount would have been found.
     verdict.refutes_asked = there.refuted && search_.would_find(asked->joint);
     if (of_elsewhere && elsewhere->surplus > there.surplus) {
@@ -230,7 +235,7 @@ void MachineWitness::weigh_other_places(const MachineStand& stand, const std::op
     }
     const MachineDoubt doubt = doubt_machine(machine_, stand, there.seen);
     if (doubt.beyond_class) {
-      verdict = {.known = true, .charge = charge_by(stand, doubt, there.seen), .doubt = doubt};
+      verdict = {.known = true, .charge = charge_by(stand, doubt, there.seen, true), .doubt = doubt};
       return;
     }
     // The charge is neither confirmed nor refuted: the frame counts only if it shows another error.
@@ -251,7 +256,7 @@ std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand&
                                                              const QuaySearch::Elsewhere& elsewhere) const {
   const MachineDoubt doubt = doubt_machine(machine_, stand, elsewhere.seen);
   if (doubt.beyond_class) {
-    return Verdict{.known = true, .charge = charge_by(stand, doubt, elsewhere.seen), .doubt = doubt};
+    return Verdict{.known = true, .charge = charge_by(stand, doubt, elsewhere.seen, true), .doubt = doubt};
   }
   const MachineGuess& guess = elsewhere.guess;
   if (elsewhere.lasting && guess.joint && guess.beyond_wear &&
@@ -262,15 +267,26 @@ std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand&
   return std::nullopt;
 }
 
-/// Keeps what is seen as the sight at rest, if the machine has stood for kAtRest (then all observations are
-/// of a standing machine), the frame has no complaint and all six directions are held.
-void MachineWitness::note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict) {
-  if (moving(rate_of(stand)).any()) {
-    standing_since_.reset();
-    return;
+void MachineWitness::note_speed(MeasurementTime time, const MachineStand& stand) {
+  const Eigen::Vector3d rate = rate_of(stand);
+  const bool stands = !moving(rate).any();
+  const bool the_same =
+      steady_ && stands == !moving(steady_->rate).any() && (stands || !moving(rate - steady_->rate).any());
+  if (!the_same) {
+    steady_ = {time, rate};
   }
-  standing_since_ = standing_since_.value_or(time);
-  if (time - *standing_since_ >= kAtRest && verdict.known && !verdict.charge && seen_.holds_all()) {
+}
+
+/// All observations are of a machine that stood, or moved as it does.
+bool MachineWitness::is_steady(MeasurementTime time) const {
+  return steady_ && time - steady_->since >= kSteady;
+}
+
+/// Keeps what is seen as the sight at rest, if the machine has stood for long enough, the frame has no
+/// complaint and all six directions are held.
+void MachineWitness::note_rest(MeasurementTime time, const Verdict& verdict) {
+  const bool at_rest = is_steady(time) && !moving(steady_->rate).any();
+  if (at_rest && verdict.known && !verdict.charge && seen_.holds_all()) {
     at_rest_ = seen_;
   }
 }
@@ -293,31 +309,37 @@ void MachineWitness::acquit(MeasurementTime time, const MachineStand& stand, con
   charges_.hear<WrongAltogether>(seen_.holds_all() && is_surely_found());
 }
 
-/// While the joints that moved when it was charged move again, and have not changed their speed for as long
-/// as observations are kept: older ones would be held against a speed that was not theirs.
+/// While the joints that moved when it was charged move again, and steadily: older observations would be held
+/// against a speed that was not theirs.
 bool MachineWitness::refutes_latency(MeasurementTime time, const MachineStand& stand,
                                      const WrongLatency& charged) const {
   const bool the_same_move = (moving(rate_of(stand)) || !moving(charged.rate)).all();
-  const bool steady = steady_ && time - steady_->since >= kAtRest;
-  return the_same_move && steady && at_rest_ && seen_.holds_all() &&
+  return the_same_move && is_steady(time) && at_rest_ && seen_.holds_all() &&
          refutes(doubt_latency(machine_, stand, seen_, *at_rest_), charged.older);
 }
 
 /// What is wrong may be carried by the boom, as a mount is, or stay as it is in W, as a wrong travel does:
-/// both have to be refuted. What was not seen of it may be anything.
-bool MachineWitness::refutes_place(const MachineStand& stand, const WrongPlace& charged) const {
+/// both have to be refuted. What was not seen of it may be anything. If it is too large to show as offsets,
+/// things that cannot have left have to be missed there, too.
+bool MachineWitness::refutes_place(const MachineStand& stand, const WrongPlace& charged) {
+  const std::vector<Twist> of_reference = doubt_of_reference();
+  // now(twist, point_W): the twist of the charged place as the error of today, about a point.
   const auto is_gone = [&](const auto& now) {
-    std::vector<Twist> unsure = doubt_of_reference();
+    std::vector<Twist> unsure = of_reference;
     for (const Twist& twist : charged.unheld) {
-      unsure.push_back(now(twist));
+      unsure.push_back(now(twist, seen_.centre_W));
     }
-    return refutes(doubt_twist(machine_, stand, seen_, now(charged.off), unsure));
+    const Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();
+    return refutes(doubt_twist(machine_, stand, seen_, now(charged.off, seen_.centre_W), unsure)) &&
+           (!charged.beyond_gate || search_.look_there(*map_, now(charged.off, origin_W)).refuted);
   };
-  return is_gone([&](const Twist& off) {
-           return about_point(seen_.centre_W - stand.sensor_W,
-                              carried_by_boom(machine_, charged.stand, stand, off));
+  return is_gone([&](const Twist& off, const Eigen::Vector3d& point_W) {
+           const Twist carried = carried_by_boom(machine_, charged.stand, stand, off);
+           return about_point(point_W - stand.sensor_W, carried);
          }) &&
-         is_gone([&](const Twist& off) { return about_point(seen_.centre_W - charged.stand.sensor_W, off); });
+         is_gone([&](const Twist& off, const Eigen::Vector3d& point_W) {
+           return about_point(point_W - charged.stand.sensor_W, off);
+         });
 }
 
 bool MachineWitness::is_found() const {
@@ -328,13 +350,6 @@ bool MachineWitness::is_found() const {
 /// Most observations agree: hardly any of them can be of something else than the quay.
 bool MachineWitness::is_surely_found() const {
   return double(seen_.agreeing) >= kSureShare * double(seen_.observations);
-}
-
-void MachineWitness::note_speed(MeasurementTime time, const MachineStand& stand) {
-  const Eigen::Vector3d rate = rate_of(stand);
-  if (!steady_ || moving(rate - steady_->rate).any()) {
-    steady_ = {time, rate};
-  }
 }
 
 void MachineWitness::remember(const QuaySighting& sighting) {
@@ -365,7 +380,7 @@ std::string MachineWitness::seen_through() const {
 }
 
 void MachineWitness::forget_sight() {
-  standing_since_.reset();
+  seen_ = {};
   steady_.reset();
   at_rest_.reset();
   sight_.forget();

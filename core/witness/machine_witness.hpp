@@ -75,16 +75,17 @@ class MachineWitness {
               const std::optional<WrongJoint>& asked);
   [[nodiscard]] bool refutes_latency(MeasurementTime time, const MachineStand& stand,
                                      const WrongLatency& charged) const;
-  [[nodiscard]] bool refutes_place(const MachineStand& stand, const WrongPlace& charged) const;
+  [[nodiscard]] bool refutes_place(const MachineStand& stand, const WrongPlace& charged);
   [[nodiscard]] bool is_found() const;
   [[nodiscard]] bool is_surely_found() const;
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
   [[nodiscard]] MachineCharge charge_by(const MachineStand& stand, const MachineDoubt& doubt,
-                                        const Misplacement& seen) const;
+                                        const Misplacement& seen, bool by_guess) const;
   void weigh_other_places(const MachineStand& stand, const std::optional<WrongJoint>& asked,
                           Verdict& verdict);
   void note_speed(MeasurementTime time, const MachineStand& stand);
-  void note_rest(MeasurementTime time, const MachineStand& stand, const Verdict& verdict);
+  [[nodiscard]] bool is_steady(MeasurementTime time) const;
+  void note_rest(MeasurementTime time, const Verdict& verdict);
   void remember(const QuaySighting& sighting);
   void forget_sight();
   [[nodiscard]] std::string seen_through() const;
@@ -104,11 +105,10 @@ class MachineWitness {
     std::deque<Point> where_W;  // middles of the last planes that were seen through
   };
   std::array<Memory, QuayMap::kClasses> planes_;
-  /// Nothing while the machine moves.
-  std::optional<MeasurementTime> standing_since_;
   /// What was seen when the machine last stood: lateness is measured against it.
   std::optional<Misplacement> at_rest_;
-  /// Since when no joint has changed its speed, and the speeds, m/s and rad/s by JointName.
+  /// Since when all joints have stood, or since when none has changed its speed; the speeds, m/s and rad/s by
+  /// JointName.
   struct Steady {
     MeasurementTime since;
     Eigen::Vector3d rate;

@@ -15,9 +15,6 @@ constexpr std::size_t kFirst = 150;
 constexpr std::size_t kInsideLevel = 30;
 constexpr QuayObserver::OfClass kOfClass = {30, 30, 30, 30};  // returns compared with planes, of each class
 
-// An error that moves returns along their plane's normal by less than this is seen as offsets, m: they stay
-// within the plane's gate even if wear moves them by another 0.2 m.
-constexpr double kWithinGate = QuayMap::kGate - 0.2F;
 // An observation tells of a joint if this share of the motion that the joint gives it is along the plane's
 // normal. So a top that slopes a little does not tell of travel.
 constexpr double kTells = 0.25;
@@ -275,9 +272,7 @@ std::optional<QuaySearch::Elsewhere> QuaySearch::look(const QuayMap& map, const 
                    frames_kept_ >= kLasting};
 }
 
-QuaySearch::There QuaySearch::look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
-                                         double amount) {
-  const Twist off = twist_of({.joint = joint, .amount = amount}, machine, stand_);
+QuaySearch::There QuaySearch::look_there(const QuayMap& map, const Twist& off) {
   tally(map, off);
   const auto gained = double(tally_.gained.size());
   const auto lost = double(tally_.all_lost());

@@ -43,6 +43,9 @@ class QuaySearch {
   /// Returns that are spread in height over more than this are not of a vehicle, m. Roads with a limit allow
   /// 4 to 4.95 m.
   static constexpr float kTallestVehicle = 5.0F;
+  /// An error that moves returns along their plane's normal by less than this is seen as offsets, m: they
+  /// stay within the plane's gate even if wear moves them by another 0.2 m.
+  static constexpr double kWithinGate = QuayMap::kGate - 0.2F;
 
   /// Shows it a frame: the returns beside the hull, the observations of planes, and where joints and mount
   /// put the machine. It takes every second frame; every frame while a guess is kept or `closely` is set.
@@ -64,9 +67,8 @@ class QuaySearch {
     std::size_t surplus = 0;
     Misplacement seen;  // as Elsewhere::seen; empty where it is worse
   };
-  /// What the returns show if the joint reads `amount` (m, rad) too much.
-  [[nodiscard]] There look_there(const QuayMap& map, const MachineConfig& machine, JointName joint,
-                                 double amount);
+  /// What the returns show if the sensor is off by `off`, a twist about the origin of W.
+  [[nodiscard]] There look_there(const QuayMap& map, const Twist& off);
 
   /// Whether guesses would find an error of the joint that is too large to show as offsets from planes. False
   /// until all guesses at the joint have been tried.

@@ -338,6 +338,31 @@ TEST(MachineWitness, NothingIsAcquittedBecauseElsewhereWearCouldExplainIt) {
   EXPECT_EQ(finding.faults, 0) << finding.reason;
 }
 
+TEST(MachineWitness, AMountTooFarOffForOffsetsIsNotAcquittedByWhatHappensToLieAtThePlaceOfTheQuay) {
+  MachineWitness witness({}, whole_map(), quay_machine(), kRegion, kHull);
+  MachineFinding finding;
+  int number = 0;
+  const auto run = [&](const Pose& E, const std::vector<QuaySurface>& besides = {}) {
+    for (const int end = number + 30; number < end; ++number) {
+      const QuayFrame frame = quay_frame(kWorking, E, static_cast<unsigned>(number), 400, {0}, besides);
+      finding =
+          witness.look(MeasurementTime{milliseconds(100) * number}, frame.scan, frame.views, frame.stand);
+    }
+  };
+  const Pose turned = pose_about(testing::stand_at(kWorking).sensor_W, so3_exp({0.0, radians(3.0), 0.0}),
+                                 Eigen::Vector3d::Zero());
+  run(turned);
+  ASSERT_EQ(finding.faults, fault::plc_value);
+  EXPECT_NE(finding.reason.find("a mount"), std::string::npos) << finding.reason;
+  // A heap that looks level and where the top should be, as large as the part of the top that is seen.
+  const Eigen::Isometry3f back(turned.inverse().cast<float>());
+  const QuaySurface& top = testing::quay_surfaces().front();
+  run(turned, {{back * top.corner, back.linear() * top.u, back.linear() * top.v}});
+  EXPECT_EQ(finding.faults, fault::plc_value) << "as much of the quay is where the charge has it";
+  run(Pose::Identity());
+  EXPECT_EQ(finding.faults, 0) << finding.reason;
+}
+
 TEST(MachineWitness, ATopOfAlmostNoSlopeAccusesNoTravelOfKilometres) {
   QuayConfig quay;
   quay.height = 0.0;

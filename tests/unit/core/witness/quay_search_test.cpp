@@ -165,17 +165,18 @@ TEST(QuaySearch, WhatStandsWhereTheMapDoesNotReachIsNoOtherPlace) {
 }
 
 TEST(QuaySearch, SaysWhetherAPlaceIsWorseThanWhereTheMachineIsSaidToBe) {
+  const MachineGuess travel{.joint = JointName::travel, .amount = 1.5};
+  const Twist off = twist_of(travel, testing::quay_machine(), testing::stand_at(kWorking));
   Looks honest;
   (void)honest.run(3, {});
-  EXPECT_TRUE(honest.search().look_there(map(), testing::quay_machine(), JointName::travel, 1.5).worse);
-  EXPECT_TRUE(honest.search().look_there(map(), testing::quay_machine(), JointName::travel, 1.5).refuted);
+  EXPECT_TRUE(honest.search().look_there(map(), off).worse);
+  EXPECT_TRUE(honest.search().look_there(map(), off).refuted);
   Looks wrong;
   (void)wrong.run(3, {1.5, 0.0, 0.0});
-  EXPECT_FALSE(wrong.search().look_there(map(), testing::quay_machine(), JointName::travel, 1.5).worse);
+  EXPECT_FALSE(wrong.search().look_there(map(), off).worse);
   Looks blind;
   (void)blind.run(3, {1.5, 0.0, 0.0}, {});
-  EXPECT_FALSE(blind.search().look_there(map(), testing::quay_machine(), JointName::travel, 1.5).worse)
-      << "of ground alone nobody knows";
+  EXPECT_FALSE(blind.search().look_there(map(), off).worse) << "of ground alone nobody knows";
 }
 
 TEST(QuaySearch, ForgettingBeginsAnew) {
