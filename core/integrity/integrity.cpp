@@ -20,19 +20,20 @@ constexpr float kStepGate = 0.5F;   // m: a return farther off the plane is of s
 constexpr float kOnRim = 0.1F;      // m across from a rim point: nearer is surely coaming
 constexpr float kAlongRim = 0.1F;   // m along from a rim point: half of the distance of rim points
 constexpr float kBelowRim = 0.15F;  // m: a return lower below a rim's top went down beside it
-// A direction in which the pose is less sure tells nothing of patches: three times this is a displaced patch.
+// A direction in which the pose is less sure tells nothing of landmarks: three times this is a displaced
+// landmark.
 constexpr double kBlurred = 0.015;  // m, 1 sigma
 constexpr float kRaised = 0.03F;    // m: a surface higher above a rim may be a cover
-// After a jump farther than this the patches' histograms are of other surfaces: evidence is forgotten.
-constexpr double kOtherPlace = PatchEvidence::kReach;  // m
+// After a jump farther than this the landmarks' histograms are of other surfaces: they are forgotten.
+constexpr double kOtherPlace = LandmarkMemory::kReach;  // m
 // A pose jumps if it moves by kJump more than kFastestHull allows: some three sigma of a pose that is as sure
-// as kBlurred. At most kGap counts as time for the hull to move, two frames without evidence and a margin.
+// as kBlurred. At most kGap counts as time for the hull to move, two frames without landmarks and a margin.
 constexpr double kJump = 0.05;  // m
 constexpr double kGap = 0.25;   // s
-// After a longer time without evidence it is forgotten: another ship may have moored there.
+// After a longer time without landmarks they are forgotten: another ship may have moored there.
 constexpr double kExchange = 300.0;  // s
 
-/// Axes at a rim point in L: n upward, across its strip towards the hold.
+/// Axes at a rim point in L: n upward, across its rim towards the hold.
 struct RimAxes {
   Point p_L, n_L, across_L;
 
@@ -79,14 +80,14 @@ IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint>
                                std::span<const ScanView> views) {
   IntegrityReport report;
   observations_.clear();
-  looks_.clear();
+  of_landmarks_.clear();
   rim_rays_.clear();
   const std::size_t surfels = map.surfels().size();
   for (const VisiblePoint& point : visible) {
     if (point.index < surfels) {
-      look_at_surfel(map, point, T_W_H, views[point.lidar], report);
+      observe_surfel(map, point, T_W_H, views[point.lidar], report);
     } else {
-      look_at_rim(map.rims()[point.index - surfels], point, T_W_H, views[point.lidar]);
+      observe_rim(map.rims()[point.index - surfels], point, T_W_H, views[point.lidar]);
     }
   }
   return report;
@@ -95,22 +96,22 @@ IntegrityReport Integrity::run(const HullMap& map, std::span<const VisiblePoint>
 void Integrity::weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
                       const Eigen::Vector3d& reference_W, const BendShape& shape, double bend,
                       IntegrityReport& report) {
-  if (evidence_.patches() != map.patches().size()) {
-    evidence_.reset(map.patches());
+  if (landmarks_.size() != map.landmarks().size()) {
+    landmarks_.reset(map.landmarks());
   }
-  evidence_.begin_frame();
+  landmarks_.begin_frame();
   if (report.step.solved && report.step.is_finite() &&
       (judge_pose_integrity(report).faults & fault::contradicted) == 0) {
     follow_pose(map, time, T_W_H, reference_W);
     const PlaneStep& step = report.step;
-    collect_evidence({T_W_H, reference_W, step.translation, step.rotation, shape, bend},
-                     step.covariance_translation);
+    observe_landmarks({T_W_H, reference_W, step.translation, step.rotation, shape, bend},
+                      step.covariance_translation);
   }
-  report.patches = evidence_.report();
+  report.landmarks = landmarks_.report();
 }
 
-/// Compares the pose with that of the last evidence. After a long time, or a jump that is long or follows a
-/// gap, evidence is forgotten; after another jump it counts as seen elsewhere.
+/// Compares the pose with that of the last observation. After a long time, or a jump that is long or follows
+/// a gap, the landmarks are forgotten; after another jump it counts as seen elsewhere.
 void Integrity::follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
                             const Eigen::Vector3d& reference_W) {
   if (weighed_) {
@@ -119,15 +120,15 @@ void Integrity::follow_pose(const HullMap& map, MeasurementTime time, const Pose
     const double moved = moved_W.norm();
     const bool jumped = moved > kJump + kFastestHull * std::min(dt, kGap);
     if (dt > kExchange || (jumped && (dt > kGap || moved > kOtherPlace))) {
-      evidence_.reset(map.patches());
+      landmarks_.reset(map.landmarks());
     } else if (jumped) {
-      evidence_.put_elsewhere((T_W_H.linear().transpose() * moved_W).cast<float>());
+      landmarks_.put_elsewhere((T_W_H.linear().transpose() * moved_W).cast<float>());
     }
   }
   weighed_ = {time, reference_W};
 }
 
-void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,
+void Integrity::observe_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H,
                                const ScanView& view, IntegrityReport& report) {
   const Surfel& surfel = map.surfels()[point.index];
   if (!surfel.planar || surfel.movable) {
@@ -161,17 +162,17 @@ void Integrity::look_at_surfel(const HullMap& map, const VisiblePoint& point, co
     const Eigen::Vector3d p_W = T_W_H * map.subset_H()[point.index].cast<double>();
     const auto [offset, weight] = mean_offset(rays_, *nearest);
     observations_.push_back({p_W, n_W, offset, weight});
-    if (surfel.patch != Surfel::kNoPatch) {
-      looks_.push_back({surfel.patch, observations_.back(), PatchLook::on});
+    if (surfel.landmark != Surfel::kNoLandmark) {
+      of_landmarks_.push_back({surfel.landmark, observations_.back(), LandmarkObservation::on});
     }
-  } else if (surfel.patch != Surfel::kNoPatch && through) {
-    looks_.push_back({surfel.patch, {.n_W = n_W}, PatchLook::through});
+  } else if (surfel.landmark != Surfel::kNoLandmark && through) {
+    of_landmarks_.push_back({surfel.landmark, {.n_W = n_W}, LandmarkObservation::through});
   }
 }
 
-void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H,
+void Integrity::observe_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H,
                             const ScanView& view) {
-  if (rim.patch == Surfel::kNoPatch) {
+  if (rim.landmark == Surfel::kNoLandmark) {
     return;
   }
   // The top is taken to be level: of so small a disc the height is known better than the slope.
@@ -182,7 +183,8 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
   float raised = 0.0F;
   const RimAxes axes{point.p_L, n_L, (T_L_W.linear() * T_W_H.linear()).cast<float>() * rim.across_H};
   const auto on = [&](float offset) {
-    looks_.push_back({rim.patch, {p_W, n_W, static_cast<double>(offset), 1.0}, PatchLook::on});
+    of_landmarks_.push_back(
+        {rim.landmark, {p_W, n_W, static_cast<double>(offset), 1.0}, LandmarkObservation::on});
     raised = std::max(raised, offset);
   };
   look_across(view, axes, [&](const Point& returned, const Point& met, float offset) {
@@ -191,7 +193,7 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
     if (std::abs(offset) <= kStepGate && axes.is_on_rim(returned)) {
       on(offset);
     } else if (offset < -kStepGate && axes.is_on_rim(met)) {
-      looks_.push_back({rim.patch, {.n_W = n_W}, PatchLook::through});
+      of_landmarks_.push_back({rim.landmark, {.n_W = n_W}, LandmarkObservation::through});
     }
     const bool through = offset < -kBelowRim;
     const Point& where = through ? met : returned;
@@ -206,7 +208,8 @@ void Integrity::look_at_rim(const RimPoint& rim, const VisiblePoint& point, cons
   collect_rays(view, (T_L_W * over_hold_W).cast<float>() + raised * n_L, n_L, rays_);
   if (const RayEnd* beside = nearest_ray(rays_)) {
     const bool goes_on = std::abs(beside->offset) < kSameSurface;
-    looks_.push_back({rim.patch, {}, goes_on ? PatchLook::goes_on : PatchLook::ends});
+    of_landmarks_.push_back(
+        {rim.landmark, {}, goes_on ? LandmarkObservation::goes_on : LandmarkObservation::ends});
   }
 }
 
@@ -215,8 +218,9 @@ Eigen::Vector3d Integrity::Shift::at(const Eigen::Vector3d& p_W) const {
   return translation + rotation.cross(p_W - reference_W) + bend * shape.rise(x_H) * T_W_H.linear().col(2);
 }
 
-/// Adds the frame's looks and rim rays to the evidence, less what `shift` (pose error and bend) explains.
-void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& covariance_translation) {
+/// Adds the frame's observations and rim rays to the landmarks, less what `shift` (pose error and bend)
+/// explains.
+void Integrity::observe_landmarks(const Shift& shift, const Eigen::Matrix3d& covariance_translation) {
   const Pose& T_W_H = shift.T_W_H;
   // True if the pose is sure enough along the normal for an offset to say something about the ship.
   const auto sharp = [&](const Eigen::Vector3d& n_W) {
@@ -239,26 +243,27 @@ void Integrity::collect_evidence(const Shift& shift, const Eigen::Matrix3d& cova
       continue;
     }
     if (ray.through || std::abs(ray.offset - lift) < kSameSurface) {
-      evidence_.add_across(*ray.rim, ray.s - aside, !ray.through);
+      landmarks_.add_across(*ray.rim, ray.s - aside, !ray.through);
     }
   }
-  for (const PatchLook& look : looks_) {
-    switch (look.kind) {
-      case PatchLook::on:
-        if (!sharp(look.seen.n_W)) {
+  for (const LandmarkObservation& observed : of_landmarks_) {
+    switch (observed.kind) {
+      case LandmarkObservation::on:
+        if (!sharp(observed.seen.n_W)) {
           break;
         }
-        evidence_.add_offset(look.patch, look.seen.offset - look.seen.n_W.dot(shift.at(look.seen.p_W)),
-                             look.seen.weight);
+        landmarks_.add_offset(observed.landmark,
+                              observed.seen.offset - observed.seen.n_W.dot(shift.at(observed.seen.p_W)),
+                              observed.seen.weight);
         break;
-      case PatchLook::through:
-        if (sharp(look.seen.n_W)) {
-          evidence_.add_through(look.patch);
+      case LandmarkObservation::through:
+        if (sharp(observed.seen.n_W)) {
+          landmarks_.add_through(observed.landmark);
         }
         break;
-      case PatchLook::goes_on:
-      case PatchLook::ends:
-        evidence_.add_beside(look.patch, look.kind == PatchLook::goes_on);
+      case LandmarkObservation::goes_on:
+      case LandmarkObservation::ends:
+        landmarks_.add_beside(observed.landmark, observed.kind == LandmarkObservation::goes_on);
         break;
     }
   }

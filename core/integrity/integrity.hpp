@@ -8,7 +8,7 @@
 //   hidden        more than kBehind before it, or less if the map has another surface there: not counted
 // Output: the share of confirmed surfels of each class of surfaces, the share seen through, and a step: the
 // correction of the pose that the scan asks for, by robust least squares, with its covariance. Nobody applies
-// the step; it is judged. weigh() also collects what rays say of the map's patches: is it the map's ship?
+// the step; it is judged. weigh() also collects what rays say of the map's landmarks: is it the map's ship?
 // The answers can only take health away. Frames W, H, L; metres, radians.
 // Thread rule: one owner, scratch is kept. Cost: about 0.2 us a visible point.
 #pragma once
@@ -23,7 +23,7 @@
 #include "core/base/status.hpp"
 #include "core/base/time.hpp"
 #include "core/geometry/se3.hpp"
-#include "core/integrity/patch_evidence.hpp"
+#include "core/integrity/landmark_memory.hpp"
 #include "core/map/hull_map.hpp"
 #include "core/registration/bend.hpp"
 #include "core/sight/scan_view.hpp"
@@ -66,13 +66,13 @@ struct IntegrityReport {
   std::uint32_t confirmed = 0;
   std::uint32_t seen_through = 0;  // part of those that are not confirmed
   PlaneStep step;
-  PatchReport patches;
+  LandmarkReport landmarks;
 };
 
 struct IntegrityFinding {
   Faults faults = 0;       // contradicted, unconstrained
   std::string reason;      // with figures; empty without a fault
-  bool undecided = false;  // no fault, but too few patches are judged to say whether it is the map's ship
+  bool undecided = false;  // no fault, but too few landmarks are judged to say whether it is the map's ship
 };
 
 /// Robust (Geman-McClure) Gauss-Newton, linearised about the observations' centroid: the observations stay
@@ -84,7 +84,7 @@ struct IntegrityFinding {
 /// What the figures mean for health. The limits and their reasons are in integrity_limits.cpp.
 [[nodiscard]] IntegrityFinding judge_integrity(const IntegrityReport& report);
 
-/// The same without the patches: they may be judged only at a pose that this does not contradict.
+/// The same without the landmarks: they may be judged only at a pose that this does not contradict.
 [[nodiscard]] IntegrityFinding judge_pose_integrity(const IntegrityReport& report);
 
 /// May the hull as well lie at another place? `there`: the report at that place; `here`: how many surfels the
@@ -101,7 +101,7 @@ class Integrity {
   static constexpr double kSight = 40.0;
 
   /// Asks the rays about each visible probe: surfels and rim points (on the tops of coamings). `visible`: of
-  /// map.probes_H(), at the pose T_W_H. The report is still without the step and the patches.
+  /// map.probes_H(), at the pose T_W_H. The report is still without the step and the landmarks.
   [[nodiscard]] IntegrityReport run(const HullMap& map, std::span<const VisiblePoint> visible,
                                     const Pose& T_W_H, std::span<const ScanView> views);
 
@@ -111,39 +111,39 @@ class Integrity {
     return solve_plane_step(observations_, reference_W);
   }
 
-  /// Adds what the scan of the last run() shows to the evidence about the patches; fills report.patches. Call
+  /// Adds what the scan of the last run() shows to the memory of the landmarks; fills report.landmarks. Call
   /// it once a frame, for the frame's own pose. What report.step and a bend of `bend` (m) along `shape`
-  /// explain is taken off. If the pose has jumped since the last call, earlier evidence counts as seen
+  /// explain is taken off. If the pose has jumped since the last call, what was seen earlier counts as seen
   /// elsewhere by the jump. It is forgotten after a jump that is long or follows a gap, and after minutes
   /// out of sight.
   void weigh(const HullMap& map, MeasurementTime time, const Pose& T_W_H, const Eigen::Vector3d& reference_W,
              const BendShape& shape, double bend, IntegrityReport& report);
 
-  /// Forgets all evidence about the patches: another ship may lie there from now on.
+  /// Forgets what was seen of the landmarks: another ship may lie there from now on.
   void forget() {
-    evidence_.reset({});
+    landmarks_.reset({});
     weighed_.reset();
   }
 
  private:
-  /// What one ray, or one probe, says about a patch. The pose's remaining error is not yet taken off.
-  struct PatchLook {
-    std::uint32_t patch;
+  /// What one ray, or one probe, says about a landmark. The pose's remaining error is not yet taken off.
+  struct LandmarkObservation {
+    std::uint32_t landmark;
     SurfelObservation seen;  // kind on: all of it; through: only the normal; else nothing
     enum Kind : std::uint8_t { on, through, goes_on, ends } kind;  // the last two: over the hold beside a rim
   };
-  /// A ray that ended on the top of a coaming (a strip) or went down beside it.
+  /// A ray that ended on the top of a coaming, a rim, or went down beside it.
   struct RimRay {
     const RimPoint* rim;
-    float s;  // m across the strip: of the return, or if it went down: of where the ray meets the top's plane
+    float s;  // m across the rim: of the return, or if it went down: of where the ray meets the top's plane
     float offset;  // height of the return over the top, m
     bool through;  // it went down
   };
   void follow_pose(const HullMap& map, MeasurementTime time, const Pose& T_W_H,
                    const Eigen::Vector3d& reference_W);
-  void look_at_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
+  void observe_surfel(const HullMap& map, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view,
                       IntegrityReport& report);
-  void look_at_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
+  void observe_rim(const RimPoint& rim, const VisiblePoint& point, const Pose& T_W_H, const ScanView& view);
   /// How far the scan finds points of the ship from where map and pose put them: the pose's error and bend.
   struct Shift {
     Pose T_W_H;
@@ -152,18 +152,18 @@ class Integrity {
     double bend;
     [[nodiscard]] Eigen::Vector3d at(const Eigen::Vector3d& p_W) const;
   };
-  void collect_evidence(const Shift& shift, const Eigen::Matrix3d& covariance_translation);
+  void observe_landmarks(const Shift& shift, const Eigen::Matrix3d& covariance_translation);
 
   std::vector<SurfelObservation> observations_;
   std::vector<RayEnd> rays_;
-  std::vector<PatchLook> looks_;
+  std::vector<LandmarkObservation> of_landmarks_;
   std::vector<RimRay> rim_rays_;
-  PatchEvidence evidence_;
+  LandmarkMemory landmarks_;
   struct Place {
     MeasurementTime time;
     Eigen::Vector3d reference_W;
   };
-  std::optional<Place> weighed_;  // when and where evidence was collected last
+  std::optional<Place> weighed_;  // when and where landmarks were observed last
 };
 
 }  // namespace hulltrack

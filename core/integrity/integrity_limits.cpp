@@ -28,13 +28,14 @@ constexpr double kMostSeenThrough = 0.05;
 // With fewer confirmed surfels the pose counts as unconstrained. With 40 a share of 0.9 has a sigma of 5 %.
 constexpr std::uint32_t kFewestConfirmed = 40;
 
-// With so many displaced patches it is another ship. One thing that was moved on deck shows three faces at
+// With so many displaced landmarks it is another ship. One thing that was moved on deck shows three faces at
 // most. A piece of a coaming's top counts twice, since a coaming cannot be moved; one is not enough, since
 // something may lie on it. One coaming's wall that stands behind its place (set back) is enough by itself:
 // nothing that is put on board sets it back.
 constexpr std::uint32_t kFewestDisplaced = 4;
-// If more patches are in view, one displaced in so many solid ones (in place or displaced) is needed. Perhaps
-// one patch in a hundred is judged wrongly; a hatch that stands elsewhere is a tenth of the patches.
+// If more landmarks are in view, one displaced in so many solid ones (in place or displaced) is needed.
+// Perhaps one landmark in a hundred is judged wrongly; a hatch that stands elsewhere is a tenth of the
+// landmarks.
 constexpr std::uint32_t kSolidPerDisplaced = 20;
 
 // Another place is possible only with this share of the surfels that are confirmed at the frame's own pose.
@@ -113,29 +114,29 @@ IntegrityFinding judge_integrity(const IntegrityReport& report) {
   if (finding.faults != 0) {
     return finding;
   }
-  const PatchReport& patches = report.patches;
-  const std::uint32_t fewest = std::max(kFewestDisplaced, patches.solid / kSolidPerDisplaced);
-  if (patches.set_back > 0 || patches.displaced + patches.displaced_rims >= fewest) {
+  const LandmarkReport& landmarks = report.landmarks;
+  const std::uint32_t fewest = std::max(kFewestDisplaced, landmarks.solid / kSolidPerDisplaced);
+  if (landmarks.set_back > 0 || landmarks.displaced + landmarks.displaced_rims >= fewest) {
     finding.faults = fault::contradicted;
     finding.reason = format_text("another ship than the map's: %u of %u fixed surfaces are elsewhere",
-                                 patches.displaced, patches.solid);
-    if (patches.median_offset > 0.0) {
-      finding.reason += format_text(", by %.2f m", patches.median_offset);
+                                 landmarks.displaced, landmarks.solid);
+    if (landmarks.median_offset > 0.0) {
+      finding.reason += format_text(", by %.2f m", landmarks.median_offset);
     }
-  } else if (outnumbers(patches.along) || outnumbers(patches.across)) {
-    const bool along = outnumbers(patches.along);
-    const StructureCount& count = along ? patches.along : patches.across;
+  } else if (outnumbers(landmarks.along) || outnumbers(landmarks.across)) {
+    const bool along = outnumbers(landmarks.along);
+    const StructureCount& count = along ? landmarks.along : landmarks.across;
     finding.faults = fault::contradicted;
     finding.reason =
         format_text("another ship than the map's: %s the ship %u structures stand elsewhere, %u in place",
                     along ? "along" : "across", count.displaced, count.in_place);
-  } else if (!patches.decided) {
+  } else if (!landmarks.decided) {
     finding.undecided = true;
     finding.reason = format_text(
         "is it the map's ship? %u of %u surfaces in view are judged; in place are %u structures along the "
         "ship, %u across, %u tops of coamings",
-        patches.judged, patches.in_view, patches.along.in_place, patches.across.in_place,
-        patches.rims_in_place);
+        landmarks.judged, landmarks.in_view, landmarks.along.in_place, landmarks.across.in_place,
+        landmarks.rims_in_place);
   }
   return finding;
 }

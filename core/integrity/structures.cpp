@@ -5,12 +5,12 @@
 
 namespace hulltrack {
 
-Structures::Structures(std::span<const MapPatch> mapped) : of_(mapped.size(), kNone) {
+Structures::Structures(std::span<const Landmark> mapped) : of_(mapped.size(), kNone) {
   number(SurfaceClass::transverse, mapped);
   number(SurfaceClass::longitudinal, mapped);
 }
 
-void Structures::number(SurfaceClass faces, std::span<const MapPatch> mapped) {
+void Structures::number(SurfaceClass faces, std::span<const Landmark> mapped) {
   std::vector<std::uint32_t> facing;
   for (std::uint32_t i = 0; i < mapped.size(); ++i) {
     if (mapped[i].faces == faces) {
@@ -19,18 +19,18 @@ void Structures::number(SurfaceClass faces, std::span<const MapPatch> mapped) {
   }
   // Hatch by hatch, then the rest by place.
   std::sort(facing.begin(), facing.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::tie(mapped[a].pit, mapped[a].place) < std::tie(mapped[b].pit, mapped[b].place);
+    return std::tie(mapped[a].hold, mapped[a].place) < std::tie(mapped[b].hold, mapped[b].place);
   });
-  const MapPatch* last = nullptr;
+  const Landmark* last = nullptr;
   for (const std::uint32_t i : facing) {
-    const MapPatch& patch = mapped[i];
-    const bool goes_on = last != nullptr && patch.pit == last->pit &&
-                         (patch.pit != Relief::kNoPit || patch.place - last->place < kApart);
+    const Landmark& landmark = mapped[i];
+    const bool goes_on = last != nullptr && landmark.hold == last->hold &&
+                         (landmark.hold != Relief::kNoHold || landmark.place - last->place < kApart);
     if (!goes_on) {
       structures_.push_back({faces, 0});
     }
     of_[i] = static_cast<std::uint32_t>(structures_.size() - 1);
-    last = &patch;
+    last = &landmark;
   }
 }
 
@@ -46,9 +46,9 @@ void Structures::clear_votes() {
   }
 }
 
-void Structures::vote(std::uint32_t patch, bool displaced) {
-  if (of_[patch] != kNone) {
-    structures_[of_[patch]].balance += displaced ? -1 : 1;
+void Structures::vote(std::uint32_t landmark, bool displaced) {
+  if (of_[landmark] != kNone) {
+    structures_[of_[landmark]].balance += displaced ? -1 : 1;
   }
 }
 

@@ -48,7 +48,7 @@ JointHistory::Answer JointHistory::at(MeasurementTime t) const {
            mix(a.joints.theta_p, b.joints.theta_p, w)}};
 }
 
-std::optional<JointHistory::Motion> JointHistory::motion_at(MeasurementTime t) const {
+std::optional<JointHistory::State> JointHistory::motion_at(MeasurementTime t) const {
   const Answer answer = at(t);
   if (answer.lookup != Lookup::ok || samples_.size() < 2) {
     return std::nullopt;
@@ -61,10 +61,10 @@ std::optional<JointHistory::Motion> JointHistory::motion_at(MeasurementTime t) c
   const JointSample& a = *std::prev(after);
   const JointSample& b = *after;
   const double dt = to_seconds(b.time - a.time);
-  return Motion{answer.joints,
-                {(b.joints.d_x - a.joints.d_x) / dt, (b.joints.theta_r - a.joints.theta_r) / dt,
-                 (b.joints.theta_p - a.joints.theta_p) / dt},
-                b.time - a.time};
+  return State{answer.joints,
+               {(b.joints.d_x - a.joints.d_x) / dt, (b.joints.theta_r - a.joints.theta_r) / dt,
+                (b.joints.theta_p - a.joints.theta_p) / dt},
+               b.time - a.time};
 }
 
 JointHistory::Lookup JointHistory::covers(MeasurementTime first, MeasurementTime last) const {

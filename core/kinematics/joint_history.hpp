@@ -37,12 +37,12 @@ class JointHistory {
 
   /// Joints and their rates at t, from the samples around t: at a sample from that one and the next, at the
   /// newest from the last two. Nothing where at() has no answer, or if there is a single sample.
-  struct Motion {
+  struct State {
     Joints joints;        // at t
     Joints rate;          // per second: m/s, rad/s
     Nanoseconds spacing;  // between the two samples
   };
-  [[nodiscard]] std::optional<Motion> motion_at(MeasurementTime t) const;
+  [[nodiscard]] std::optional<State> motion_at(MeasurementTime t) const;
 
   /// ok if every time in [first, last] has an answer; otherwise the first reason met.
   [[nodiscard]] Lookup covers(MeasurementTime first, MeasurementTime last) const;

@@ -37,7 +37,7 @@ bool could_lie(const Pose& T_H_W) {
 
 struct Shift {
   int x, y, z;  // by how many cells the hull is moved
-  int worth;
+  int score;
 };
 
 /// First and last whole cell within [low, high], m. An interval without one gets the cell nearest its middle.
@@ -47,7 +47,7 @@ std::pair<int, int> cells_within(float low, float high) {
           std::max(middle, static_cast<int>(std::floor(high / OccupancyGrid::kCell)))};
 }
 
-/// All shifts within `reach`; a shift is worth the sum of the grid's values under the moved cells.
+/// All shifts within `reach`; a shift's score is the sum of the grid's values under the moved cells.
 std::vector<Shift> correlate(const OccupancyGrid& grid, const std::vector<OccupancyGrid::Index>& cells,
                              const Box& reach) {
   const auto [x0, x1] = cells_within(reach.min.x(), reach.max.x());
@@ -58,10 +58,10 @@ std::vector<Shift> correlate(const OccupancyGrid& grid, const std::vector<Occupa
   std::vector<Shift> shifts;
   for (int x = x0; x <= x1; ++x) {
     for (int y = y0; y <= y1; ++y) {
-      std::array<std::uint16_t, OccupancyGrid::kHeights> worth{};
-      grid.correlate(cells, -x, -y, worth);
+      std::array<std::uint16_t, OccupancyGrid::kHeights> scores{};
+      grid.correlate(cells, -x, -y, scores);
       for (int z = z0; z <= z1; ++z) {
-        shifts.push_back({x, y, z, worth[static_cast<std::size_t>(OccupancyGrid::kUp - z)]});
+        shifts.push_back({x, y, z, scores[static_cast<std::size_t>(OccupancyGrid::kUp - z)]});
       }
     }
   }
@@ -86,7 +86,7 @@ std::vector<Eigen::Vector3d> HullSearch::best_shifts(std::span<const Point> few_
   std::vector<Eigen::Vector3d> best;
   while (best.size() < most && !shifts.empty()) {
     const Shift top = *std::max_element(shifts.begin(), shifts.end(),
-                                        [](const Shift& a, const Shift& b) { return a.worth < b.worth; });
+                                        [](const Shift& a, const Shift& b) { return a.score < b.score; });
     best.emplace_back(kCell * top.x, kCell * top.y, kCell * top.z);
     std::erase_if(shifts, [&](const Shift& shift) { return near(shift, top); });
   }
@@ -127,7 +127,7 @@ void HullSearch::add(const Place& place) {
 
 double HullSearch::score(std::span<const Point> few_W, const Pose& T_H_W, PointToPlaneIcp& icp) const {
   const PlaneScore score = icp.score(few_W, map_->planes(), T_H_W);
-  return score.points == 0 ? 0.0 : score.worth / score.points;
+  return score.points == 0 ? 0.0 : score.sum / score.points;
 }
 
 void HullSearch::score_places(std::span<const Point> few_W, PointToPlaneIcp& icp) {
@@ -147,9 +147,9 @@ Pose HullSearch::slide(std::span<const Point> few_W, const Pose& T_H_W, PointToP
     for (const double by : kSlides) {
       Pose T = from;
       T.translation()[axis] += by;
-      if (const double worth = score(few_W, T, icp); worth > best_score) {
+      if (const double here = score(few_W, T, icp); here > best_score) {
         best = T;
-        best_score = worth;
+        best_score = here;
       }
     }
   }

@@ -33,7 +33,7 @@ Matrix6 covariance_at_reference(const Matrix6& about_centre_H, const Eigen::Vect
 
 Matrix6 covariance_of_joints(const MachineConfig& machine, const JointHistory& joints, MeasurementTime time,
                              const Eigen::Vector3d& reference_W) {
-  const std::optional<JointHistory::Motion> motion = joints.motion_at(time);
+  const std::optional<JointHistory::State> motion = joints.motion_at(time);
   Matrix6 covariance = Matrix6::Zero();
   if (!motion) {
     return covariance;

@@ -39,8 +39,8 @@ constexpr double kFarthestUnseen = 60.0;
 const Eigen::Matrix3f kAskew =
     Eigen::Quaternionf::FromTwoVectors(Point::UnitZ(), Point(1.0F, 1.0F, 1.0F)).toRotationMatrix();
 
-// PlaneCovariance::shared: how much more patches of residuals scatter than single ones would. Its mean before
-// the first frame, and the weight of a frame's own figure (a dozen per cent off) in the mean.
+// PlaneCovariance::shared: how much more clusters of residuals scatter than single ones would. Its mean
+// before the first frame, and the weight of a frame's own figure (a dozen per cent off) in the mean.
 constexpr double kSharedAtFirst = 2.0;
 constexpr double kSharedGain = 0.1;
 
@@ -144,10 +144,10 @@ Matrix6 PoseFinder::covariance(const PlaneCovariance& fit) const {
 
 Pose PoseFinder::followed(MeasurementTime time, const Track& track) const {
   const FollowedPose& last = *track.followed;
-  const MotionRecord::Motion motion = track.motion.motion().value_or(MotionRecord::Motion{});
+  const HullSpeed speed = track.speed_record.speed().value_or(HullSpeed{});
   const double dt = std::max(0.0, to_seconds(time - last.time));
-  const Eigen::Vector3d rpy = rpy_from_rotation(last.rotation) + dt * motion.rpy_rate;
-  return pose_about(hull_.reference_point, rotation_from_rpy(rpy), last.displacement + dt * motion.velocity)
+  const Eigen::Vector3d rpy = rpy_from_rotation(last.rotation) + dt * speed.rpy_rate;
+  return pose_about(hull_.reference_point, rotation_from_rpy(rpy), last.displacement + dt * speed.velocity)
       .inverse();
 }
 
@@ -220,19 +220,19 @@ void PoseFinder::settle(const Pose& start, const Pose& T_H_W, bool contradicted)
   }
 }
 
-SearchEvidence PoseFinder::evidence(const Pose& T_H_W) const {
-  SearchEvidence evidence{search_.tried(), search_.starts(), std::nullopt};
+SearchProgress PoseFinder::progress(const Pose& T_H_W) const {
+  SearchProgress progress{search_.tried(), search_.starts(), std::nullopt};
   if (search_is_stale_) {
-    evidence = {0, 1, std::nullopt};
+    progress = {0, 1, std::nullopt};
   }
   const Eigen::Vector3d& reference = hull_.reference_point;
   for (const HullSearch::Place& place : search_.places()) {
     if (place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
-      evidence.rival = place.T_H_W.inverse() * reference - reference;
+      progress.rival = place.T_H_W.inverse() * reference - reference;
       break;
     }
   }
-  return evidence;
+  return progress;
 }
 
 void PoseFinder::judged(const Track& track, bool reacquire) {

@@ -20,7 +20,7 @@
 #include "core/localisation/bend_filter.hpp"
 #include "core/localisation/hull_config.hpp"
 #include "core/localisation/hull_search.hpp"
-#include "core/localisation/search_evidence.hpp"
+#include "core/localisation/search_progress.hpp"
 #include "core/localisation/track.hpp"
 #include "core/map/hull_map.hpp"
 #include "core/registration/point_to_plane_icp.hpp"
@@ -61,7 +61,7 @@ class PoseFinder {
   void settle(const Pose& start, const Pose& T_H_W, bool contradicted);
 
   /// How far the search has come, and the first place that rivals `T_H_W`, the answer of find().
-  [[nodiscard]] SearchEvidence evidence(const Pose& T_H_W) const;
+  [[nodiscard]] SearchProgress progress(const Pose& T_H_W) const;
 
   /// To be called when the frame is judged. Remembers a unique pose. The search begins anew after a
   /// re-acquire edge, when the pose is no longer unique, or after ten frames in which it had tried all starts

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/base/time.hpp"
-#include "core/localisation/motion_record.hpp"
+#include "core/localisation/hull_speed_record.hpp"
 
 namespace hulltrack {
 
@@ -28,7 +28,7 @@ struct FollowedPose {
 
 struct Track {
   std::optional<FollowedPose> followed;  // the last pose that the scan did not contradict
-  MotionRecord motion;                   // of the followed poses
+  HullSpeedRecord speed_record;          // of the followed poses
   bool unique = false;                   // the pose follows from one that no other place rivalled
 };
 

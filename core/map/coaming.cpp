@@ -52,14 +52,14 @@ struct Line {
 };
 
 /// Mean of the points, and the level direction in which they spread least, turned towards `side`.
-Line fit_line(const std::vector<RimPoint*>& strip, const Point& side) {
+Line fit_line(const std::vector<RimPoint*>& rim, const Point& side) {
   Line line{Point::Zero(), Point::Zero()};
-  for (const RimPoint* rim : strip) {
-    line.centre += rim->p_H / static_cast<float>(strip.size());
+  for (const RimPoint* point : rim) {
+    line.centre += point->p_H / static_cast<float>(rim.size());
   }
   Eigen::Matrix2f squares = Eigen::Matrix2f::Zero();
-  for (const RimPoint* rim : strip) {
-    const Eigen::Vector2f d = (rim->p_H - line.centre).head<2>();
+  for (const RimPoint* point : rim) {
+    const Eigen::Vector2f d = (point->p_H - line.centre).head<2>();
     squares += d * d.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2f> solver(squares);
@@ -69,35 +69,35 @@ Line fit_line(const std::vector<RimPoint*>& strip, const Point& side) {
 }
 
 /// Fits a line, drops points off it (say on a locker beside the coaming) in three ever narrower rounds, moves
-/// the rest onto it and turns across_H square to it. With too few points left the strip is given up.
-void straighten(std::vector<RimPoint*>& strip) {
-  const Point side = strip.front()->across_H;
+/// the rest onto it and turns across_H square to it. With too few points left the rim is given up.
+void straighten(std::vector<RimPoint*>& rim) {
+  const Point side = rim.front()->across_H;
   for (const float farthest : {0.3F, 0.1F, kOffLine}) {
-    const Line line = fit_line(strip, side);
-    std::erase_if(strip, [&](RimPoint* rim) {
-      const bool off = std::abs(line.across.dot(rim->p_H - line.centre)) > farthest;
-      rim->patch = off ? Surfel::kNoPatch : rim->patch;
+    const Line line = fit_line(rim, side);
+    std::erase_if(rim, [&](RimPoint* point) {
+      const bool off = std::abs(line.across.dot(point->p_H - line.centre)) > farthest;
+      point->landmark = off ? Surfel::kNoLandmark : point->landmark;
       return off;
     });
-    if (strip.size() < kFewestRimPoints) {
-      for (RimPoint* rim : strip) {
-        rim->patch = Surfel::kNoPatch;
+    if (rim.size() < kFewestRimPoints) {
+      for (RimPoint* point : rim) {
+        point->landmark = Surfel::kNoLandmark;
       }
-      strip.clear();
+      rim.clear();
       return;
     }
   }
-  const Line line = fit_line(strip, side);
-  for (RimPoint* rim : strip) {
-    rim->across_H = line.across;
-    rim->p_H -= line.across.dot(rim->p_H - line.centre) * line.across;
+  const Line line = fit_line(rim, side);
+  for (RimPoint* point : rim) {
+    point->across_H = line.across;
+    point->p_H -= line.across.dot(point->p_H - line.centre) * line.across;
   }
 }
 
 Point seen_from_above(const Point& p) { return {p.x(), p.y(), 0.0F}; }
 
 /// If the surfel is a wall under an edge of the rim (below it, facing across it, within kAtEdge of the edge):
-/// the level unit vector from the strip's middle through this wall. Zero otherwise.
+/// the level unit vector from the rim's middle through this wall. Zero otherwise.
 Point outward_under(const RimPoint& rim, const Surfel& wall) {
   const Point d = wall.centre_H - rim.p_H;
   const float s = rim.across_H.dot(d);
@@ -110,18 +110,18 @@ Point outward_under(const RimPoint& rim, const Surfel& wall) {
   return std::abs(s - rim.begin) < kAtEdge ? Point(-rim.across_H) : Point::Zero();
 }
 
-/// Finds the strip's edges: counts map points of the strip's height over the distance from its middle line.
-void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
+/// Finds the rim's edges: counts map points of the rim's height over the distance from its middle line.
+void measure_rim(const KdTree& map, std::vector<RimPoint*>& rim) {
   constexpr float kBin = 0.0125F;  // m
   constexpr int kBins = static_cast<int>(2.0F * kRimAside / kBin);
   std::array<float, kBins> profile{};
   Cloud neighbours;
-  for (const RimPoint* rim : strip) {
-    map.within(rim->p_H, 1.2F * kRimAside, neighbours);
+  for (const RimPoint* point : rim) {
+    map.within(point->p_H, 1.2F * kRimAside, neighbours);
     for (const Point& neighbour : neighbours) {
-      const Point d = neighbour - rim->p_H;
-      const float s = rim->across_H.dot(d);
-      const float along = Point::UnitZ().cross(rim->across_H).dot(d);
+      const Point d = neighbour - point->p_H;
+      const float s = point->across_H.dot(d);
+      const float along = Point::UnitZ().cross(point->across_H).dot(d);
       const int bin = static_cast<int>(std::floor((s + kRimAside) / kBin));
       if (std::abs(d.z()) < kRimThickness && std::abs(along) < 0.5F * kRimSpacing && bin >= 0 &&
           bin < kBins) {
@@ -138,7 +138,7 @@ void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
   constexpr float kMostBeyond = 0.15F;  // ... at most this share of the middle's count may be left
   float plateau = 0.0F;
   constexpr int kMiddle = kBins / 2;
-  constexpr int kHalfWidth = 8;  // bins: 0.1 m to either side is strip
+  constexpr int kHalfWidth = 8;  // bins: 0.1 m to either side is rim
   for (int i = kMiddle - kHalfWidth; i < kMiddle + kHalfWidth; ++i) {
     plateau += profile[static_cast<std::size_t>(i)] / (2.0F * kHalfWidth);
   }
@@ -151,9 +151,9 @@ void measure_strip(const KdTree& map, std::vector<RimPoint*>& strip) {
   if (low == 0 || high == kBins - 1 || !sharp) {
     return;  // broader than a rim, or another surface joins it: the edges stay unknown
   }
-  for (RimPoint* rim : strip) {
-    rim->begin = (static_cast<float>(low) + 1.0F) * kBin - kRimAside;
-    rim->end = static_cast<float>(high) * kBin - kRimAside;
+  for (RimPoint* point : rim) {
+    point->begin = (static_cast<float>(low) + 1.0F) * kBin - kRimAside;
+    point->end = static_cast<float>(high) * kBin - kRimAside;
   }
 }
 
@@ -166,8 +166,8 @@ std::vector<RimPoint> find_rims(const Cloud& cloud_H, const KdTree& map, const R
   Cloud fine_points;
   Cloud neighbours;
   for (const Point& p : thin) {
-    const std::optional<Point> over_hold = relief.over_pit_near(p, kRimReach);
-    if (!over_hold || relief.in_covers_place(p) || p.z() < relief.rim_around(*over_hold) - kBelowRim) {
+    const std::optional<Point> over_hold = relief.over_hold_near(p, kRimReach);
+    if (!over_hold || relief.in_covers_place(p) || p.z() < relief.rim_height_around(*over_hold) - kBelowRim) {
       continue;
     }
     map.within(p, kRimRadius, neighbours);
@@ -192,26 +192,26 @@ std::vector<RimPoint> find_rims(const Cloud& cloud_H, const KdTree& map, const R
 }
 
 void measure_rims(const KdTree& map, std::vector<RimPoint>& rims) {
-  std::map<std::uint32_t, std::vector<RimPoint*>> strips;
+  std::map<std::uint32_t, std::vector<RimPoint*>> by_landmark;
   for (RimPoint& rim : rims) {
-    if (rim.patch != Surfel::kNoPatch) {
-      strips[rim.patch].push_back(&rim);
+    if (rim.landmark != Surfel::kNoLandmark) {
+      by_landmark[rim.landmark].push_back(&rim);
     }
   }
-  for (auto& [patch, strip] : strips) {
-    straighten(strip);
-    if (!strip.empty()) {
-      measure_strip(map, strip);
+  for (auto& [landmark, rim] : by_landmark) {
+    straighten(rim);
+    if (!rim.empty()) {
+      measure_rim(map, rim);
     }
   }
 }
 
-std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t patches,
+std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t landmarks,
                                      std::vector<Surfel>& surfels) {
   std::vector<RimPoint> measured;
   std::copy_if(rims.begin(), rims.end(), std::back_inserter(measured),
                [](const RimPoint& rim) { return rim.is_measured(); });
-  std::vector<bool> is_wall(patches, false);
+  std::vector<bool> is_wall(landmarks, false);
   if (measured.empty()) {
     return is_wall;
   }
@@ -221,25 +221,25 @@ std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32
   }
   const KdTree tree(places);
   struct Wall {
-    Point outward = Point::Zero();  // sum of outward_under() over the patch's surfels
-    float surfels = 0.0F;           // how many the patch has
+    Point outward = Point::Zero();  // sum of outward_under() over the landmark's surfels
+    float surfels = 0.0F;           // how many the landmark has
   };
-  std::vector<Wall> walls(patches);
+  std::vector<Wall> walls(landmarks);
   for (const Surfel& surfel : surfels) {
-    if (surfel.patch != Surfel::kNoPatch) {
-      ++walls[surfel.patch].surfels;
+    if (surfel.landmark != Surfel::kNoLandmark) {
+      ++walls[surfel.landmark].surfels;
       if (const auto near = tree.nearest(seen_from_above(surfel.centre_H), kRimAside)) {
-        walls[surfel.patch].outward += outward_under(measured[near->index], surfel);
+        walls[surfel.landmark].outward += outward_under(measured[near->index], surfel);
       }
     }
   }
   for (Surfel& surfel : surfels) {
-    if (surfel.patch == Surfel::kNoPatch) {
+    if (surfel.landmark == Surfel::kNoLandmark) {
       continue;
     }
-    const Wall& wall = walls[surfel.patch];
+    const Wall& wall = walls[surfel.landmark];
     if (wall.outward.norm() > 0.5F * wall.surfels) {
-      is_wall[surfel.patch] = true;
+      is_wall[surfel.landmark] = true;
       surfel.normal_H *= std::copysign(1.0F, wall.outward.dot(surfel.normal_H));
       surfel.backed = true;
     }

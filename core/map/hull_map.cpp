@@ -28,7 +28,7 @@ HullMap::HullMap(Cloud cloud_H)
       occupancy_(subset_H_) {
   orient_surfels(subset_H_, tree_, surfels_);
   rims_ = find_rims(cloud_H_, tree_, relief_);
-  patches_ = number_patches(subset_H_, tree_, relief_, surfels_, rims_);
+  landmarks_ = find_landmarks(subset_H_, tree_, relief_, surfels_, rims_);
   probes_H_ = subset_H_;
   for (const RimPoint& rim : rims_) {
     probes_H_.push_back(rim.p_H);

@@ -11,8 +11,8 @@
 #include "core/geometry/cloud.hpp"
 #include "core/geometry/point_blocks.hpp"
 #include "core/kdtree/kdtree.hpp"
+#include "core/map/landmarks.hpp"
 #include "core/map/occupancy_grid.hpp"
-#include "core/map/patches.hpp"
 #include "core/map/plane_map.hpp"
 #include "core/map/relief.hpp"
 #include "core/map/surfel.hpp"
@@ -37,9 +37,9 @@ class HullMap {
   [[nodiscard]] const Cloud& subset_H() const { return subset_H_; }
   [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
 
-  /// Points on the tops of the hatches' coamings, and the patches that rim points and surfels form.
+  /// Points on the tops of the hatches' coamings, and the landmarks that rim points and surfels form.
   [[nodiscard]] const std::vector<RimPoint>& rims() const { return rims_; }
-  [[nodiscard]] const std::vector<MapPatch>& patches() const { return patches_; }
+  [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarks_; }
 
   /// The points that are looked for in a scan: first the metric subset, then the rim points.
   [[nodiscard]] const Cloud& probes_H() const { return probes_H_; }
@@ -58,7 +58,7 @@ class HullMap {
   Cloud subset_H_;
   std::vector<Surfel> surfels_;
   std::vector<RimPoint> rims_;
-  std::vector<MapPatch> patches_;  // by number
+  std::vector<Landmark> landmarks_;  // by number
   Cloud probes_H_;
   PointBlocks occluders_H_;
   Relief relief_;

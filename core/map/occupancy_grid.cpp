@@ -10,7 +10,7 @@ namespace hulltrack {
 namespace {
 
 // correlate() adds 64 heights at once as bytes, whole registers; only the first kHeights of them are wanted.
-// A cell is worth 2 at most, so that a byte holds the sum of 127 cells. Then 16 bits take over.
+// A cell has a value of 2 at most, so that a byte holds the sum of 127 cells. Then 16 bits take over.
 constexpr int kLanes = 64;
 constexpr std::size_t kCellsInBytes = 127;
 static_assert(kLanes >= OccupancyGrid::kHeights);
@@ -59,30 +59,30 @@ OccupancyGrid::Index OccupancyGrid::cell_of(const Point& p_H) const {
   return {cell(scaled.x()), cell(scaled.y()), cell(scaled.z())};
 }
 
-void OccupancyGrid::mark(const Index& cell, std::uint8_t worth) {
+void OccupancyGrid::mark(const Index& cell, std::uint8_t value) {
   const int z = cell.z + kBelow;
   const int layer = z >> kLayerBits;
   const int height = z & (kLayer - 1);
-  mark_in_layer(cell, layer, height, worth);
+  mark_in_layer(cell, layer, height, value);
   if (height < kHeights - 1) {
-    mark_in_layer(cell, layer - 1, kLayer + height, worth);
+    mark_in_layer(cell, layer - 1, kLayer + height, value);
   }
 }
 
-void OccupancyGrid::mark_in_layer(const Index& cell, int layer, int height, std::uint8_t worth) {
+void OccupancyGrid::mark_in_layer(const Index& cell, int layer, int height, std::uint8_t value) {
   const std::uint32_t block = blocks_.add(cell.x >> kSideBits, cell.y >> kSideBits, layer);
   worth_.resize(blocks_.size() * kBlock, 0);
   std::uint8_t& at = worth_[block * kBlock + column_of(cell.x, cell.y) + static_cast<std::size_t>(height)];
-  at = std::max(at, worth);
+  at = std::max(at, value);
 }
 
 void OccupancyGrid::correlate(std::span<const Index> cells, int x, int y,
-                              std::span<std::uint16_t, kHeights> worth) const {
+                              std::span<std::uint16_t, kHeights> values) const {
   std::array<std::uint8_t, kLanes> bytes{};
   std::size_t cells_in_bytes = 0;
   const auto empty_bytes = [&] {
     for (std::size_t k = 0; k < kHeights; ++k) {
-      worth[k] = static_cast<std::uint16_t>(worth[k] + bytes[k]);
+      values[k] = static_cast<std::uint16_t>(values[k] + bytes[k]);
     }
     bytes.fill(0);
     cells_in_bytes = 0;

@@ -14,10 +14,10 @@ namespace {
 const float kBareCosine = std::cos(0.87F);  // 50 deg
 
 /// Whether something else may be found in the surfel's place on the same ship on another day: cargo on a
-/// level surface in a pit, a hatch cover in the covers' place.
+/// level surface in a hold, a hatch cover in the covers' place.
 bool may_change(const Surfel& surfel, const Relief& relief) {
   const bool lies = std::abs(surfel.normal_H.z()) > kBareCosine;
-  return (lies && relief.in_pit(surfel.centre_H)) || relief.in_covers_place(surfel.centre_H);
+  return (lies && relief.in_hold(surfel.centre_H)) || relief.in_covers_place(surfel.centre_H);
 }
 
 std::vector<PlaneMap::Plane> find_planes(const Cloud& cloud_H, const KdTree& map, const Relief& relief) {
@@ -41,15 +41,15 @@ Cloud centres_of(const std::vector<PlaneMap::Plane>& planes) {
   return centres_H;
 }
 
-/// Numbers the patches in the order of their first plane; returns how many there are.
-std::uint32_t number_patches(std::vector<PlaneMap::Plane>& planes) {
+/// Numbers the clusters in the order of their first plane; returns how many there are.
+std::uint32_t number_clusters(std::vector<PlaneMap::Plane>& planes) {
   std::map<std::array<int, 4>, std::uint32_t> numbers;
   for (PlaneMap::Plane& plane : planes) {
     const auto cell = [&plane](int axis) {
-      return static_cast<int>(std::floor(plane.centre_H[axis] / PlaneMap::kPatch));
+      return static_cast<int>(std::floor(plane.centre_H[axis] / PlaneMap::kClusterSize));
     };
     const std::array<int, 4> key{cell(0), cell(1), cell(2), static_cast<int>(plane.surface)};
-    plane.patch = numbers.try_emplace(key, static_cast<std::uint32_t>(numbers.size())).first->second;
+    plane.cluster = numbers.try_emplace(key, static_cast<std::uint32_t>(numbers.size())).first->second;
   }
   return static_cast<std::uint32_t>(numbers.size());
 }
@@ -58,7 +58,7 @@ std::uint32_t number_patches(std::vector<PlaneMap::Plane>& planes) {
 
 PlaneMap::PlaneMap(const Cloud& cloud_H, const KdTree& map, const Relief& relief)
     : planes_(find_planes(cloud_H, map, relief)),
-      patches_(number_patches(planes_)),
+      clusters_(number_clusters(planes_)),
       tree_(centres_of(planes_)) {}
 
 }  // namespace hulltrack

@@ -26,24 +26,24 @@ class PlaneMap {
     Point centre_H;
     Point normal_H;  // unit, sign arbitrary
     SurfaceClass surface;
-    std::uint32_t patch;  // number of its patch (see kPatch), below patches()
+    std::uint32_t cluster;  // number of its cluster (see kClusterSize), below clusters()
   };
-  /// A patch is all planes of one class in a cube of this size, connected or not. Errors of the map and of
-  /// what lies on a surface are shared over about this length; a few dozen patches are in view. The
+  /// A cluster is all planes of one class in a cube of this size, connected or not. Errors of the map and of
+  /// what lies on a surface are shared over about this length; a few dozen clusters are in view. The
   /// covariance of a fit needs them (see core/registration/plane_covariance.hpp).
-  static constexpr float kPatch = 3.0F;  // m
+  static constexpr float kClusterSize = 3.0F;  // m
 
   /// `map` is the tree over `cloud_H`.
   PlaneMap(const Cloud& cloud_H, const KdTree& map, const Relief& relief);
 
   [[nodiscard]] const std::vector<Plane>& planes() const { return planes_; }
-  [[nodiscard]] std::uint32_t patches() const { return patches_; }
+  [[nodiscard]] std::uint32_t clusters() const { return clusters_; }
   /// Search tree over the planes' centres; its indices are those of planes().
   [[nodiscard]] const KdTree& tree() const { return tree_; }
 
  private:
   std::vector<Plane> planes_;
-  std::uint32_t patches_ = 0;
+  std::uint32_t clusters_ = 0;
   KdTree tree_;
 };
 

@@ -63,10 +63,10 @@ Relief::Relief(std::span<const Point> cloud_H) {
     top = std::max(top, p.z());
   }
   find_horizons();
-  find_pits();
+  find_holds();
   find_insides();
   smooth_rims();
-  number_pits();
+  number_holds();
   raise_covers_place();
   find_tall_columns();
 }
@@ -275,27 +275,27 @@ void Relief::find_horizons() {
   }
 }
 
-bool Relief::in_pit(const Point& p) const { return at(horizon_, cell_of(p), kNothing) >= p.z() + kDepth; }
+bool Relief::in_hold(const Point& p) const { return at(horizon_, cell_of(p), kNothing) >= p.z() + kDepth; }
 
-void Relief::find_pits() {
-  rim_.assign(top_.size(), kNoRim);
+void Relief::find_holds() {
+  rim_height_.assign(top_.size(), kNoRim);
   std::vector<Cell> grown;
   for_each_cell([&](Cell c, std::size_t place) {
     if (top_[place] != kNothing && horizon_[place] >= top_[place] + kDepth) {
-      rim_[place] = horizon_[place];
+      rim_height_[place] = horizon_[place];
       grown.push_back(c);
     }
   });
-  // Empty cells that touch a pit and have a horizon become pit: no survey saw the shadow under a coaming.
+  // Empty cells that touch a hold and have a horizon become hold: no survey saw the shadow under a coaming.
   while (!grown.empty()) {
     const Cell from = grown.back();
     grown.pop_back();
     for (const auto& [dc, dr] : kDirections) {
       const Cell c{from.column + dc, from.row + dr};
       const std::size_t place = place_of(c);
-      if (place != kNoPlace && top_[place] == kNothing && std::isnan(rim_[place]) &&
+      if (place != kNoPlace && top_[place] == kNothing && std::isnan(rim_height_[place]) &&
           horizon_[place] != kNothing) {
-        rim_[place] = horizon_[place];
+        rim_height_[place] = horizon_[place];
         grown.push_back(c);
       }
     }
@@ -303,29 +303,30 @@ void Relief::find_pits() {
 }
 
 void Relief::find_insides() {
-  inside_pit_.assign(rim_.size(), 0);
-  tile_has_pit_.assign(corners_.size(), 0);
+  inside_hold_.assign(rim_height_.size(), 0);
+  tile_has_hold_.assign(corners_.size(), 0);
   for_each_cell([&](Cell c, std::size_t place) {
-    if (!std::isnan(rim_[place]) && std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
-          return !std::isnan(at(rim_, {c.column + d.first, c.row + d.second}, kNoRim));
+    if (!std::isnan(rim_height_[place]) &&
+        std::all_of(kDirections.begin(), kDirections.end(), [&](const auto& d) {
+          return !std::isnan(at(rim_height_, {c.column + d.first, c.row + d.second}, kNoRim));
         })) {
-      inside_pit_[place] = 1;
-      tile_has_pit_[place / kTileCells] = 1;
+      inside_hold_[place] = 1;
+      tile_has_hold_[place / kTileCells] = 1;
     }
   });
 }
 
-/// Per cell: height of the rim if it is inside a pit, m; NaN elsewhere.
+/// Per cell: height of the rim if it is inside a hold, m; NaN elsewhere.
 std::vector<float> Relief::rims_of_insides() const {
-  std::vector<float> rims(rim_.size(), kNoRim);
+  std::vector<float> rims(rim_height_.size(), kNoRim);
   for (std::size_t place = 0; place < rims.size(); ++place) {
-    rims[place] = inside_pit_[place] != 0 ? rim_[place] : kNoRim;
+    rims[place] = inside_hold_[place] != 0 ? rim_height_[place] : kNoRim;
   }
   return rims;
 }
 
-/// Replaces the rim of each cell inside a pit by the upper quartile of the rims within kCoversReach. A gap in
-/// a coaming, or a corner that the survey missed, lowers the rim of all cells in line with it, and nothing
+/// Replaces the rim of each cell inside a hold by the upper quartile of the rims within kCoversReach. A gap
+/// in a coaming, or a corner that the survey missed, lowers the rim of all cells in line with it, and nothing
 /// raises a rim. Rims farther away are left out, since a coaming's height follows trim and sheer.
 void Relief::smooth_rims() {
   // A multiple of kStride, so that the steps from -reach to reach meet the cell itself.
@@ -334,13 +335,13 @@ void Relief::smooth_rims() {
   Window<float> window(kNoRim);
   std::vector<float> around;
   for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
-    if (tile_has_pit_[tile] == 0) {
+    if (tile_has_hold_[tile] == 0) {
       continue;
     }
     look_around(rims, tile, 1, window);
     for (std::size_t i = 0; i < kTileCells; ++i) {
       const std::size_t place = tile * kTileCells + i;
-      if (inside_pit_[place] == 0) {
+      if (inside_hold_[place] == 0) {
         continue;
       }
       const Cell c{corners_[tile].column + static_cast<int>(i) % kTile,
@@ -355,21 +356,21 @@ void Relief::smooth_rims() {
       }
       const auto quartile = around.begin() + static_cast<std::ptrdiff_t>(3 * around.size() / 4);
       std::nth_element(around.begin(), quartile, around.end());
-      rim_[place] = *quartile;
+      rim_height_[place] = *quartile;
     }
   }
 }
 
-/// Connected cells inside pits are one pit.
-void Relief::number_pits() {
-  pit_.assign(top_.size(), kNoPit);
-  std::uint32_t pits = 0;
+/// Connected cells inside holds are one hold.
+void Relief::number_holds() {
+  hold_.assign(top_.size(), kNoHold);
+  std::uint32_t holds = 0;
   std::vector<Cell> grown;
   for_each_cell([&](Cell first, std::size_t) {
     const auto join = [&](Cell c) {
       const std::size_t place = place_of(c);
-      if (place != kNoPlace && inside_pit_[place] != 0 && pit_[place] == kNoPit) {
-        pit_[place] = pits;
+      if (place != kNoPlace && inside_hold_[place] != 0 && hold_[place] == kNoHold) {
+        hold_[place] = holds;
         grown.push_back(c);
       }
     };
@@ -382,7 +383,7 @@ void Relief::number_pits() {
         join({from.column + dc, from.row + dr});
       }
     }
-    pits += begun ? 1 : 0;
+    holds += begun ? 1 : 0;
   });
 }
 
@@ -390,14 +391,14 @@ void Relief::number_pits() {
 /// along columns. The covers' place begins kOnRim above it.
 void Relief::raise_covers_place() {
   covers_from_.assign(top_.size(), kNowhere);
-  const int reach = cells(kCoversReach) + 1;  // one more: cells inside a pit begin one cell off its edge
+  const int reach = cells(kCoversReach) + 1;  // one more: cells inside a hold begin one cell off its edge
   const std::vector<float> rims = rims_of_insides();
   Window<float> window(kNoRim);
   std::vector<float> along_rows;
   for (std::size_t tile = 0; tile < corners_.size(); ++tile) {
     const Cell corner = corners_[tile];
-    if (!any_pit({corner.column - reach, corner.row - reach},
-                 {corner.column + kTile - 1 + reach, corner.row + kTile - 1 + reach})) {
+    if (!any_hold({corner.column - reach, corner.row - reach},
+                  {corner.column + kTile - 1 + reach, corner.row + kTile - 1 + reach})) {
       continue;
     }
     look_around(rims, tile, 1, window);
@@ -445,17 +446,17 @@ bool Relief::under_covers_place(const Point& p) const {
 
 bool Relief::in_covers_place(const Point& p) const { return p.z() > at(covers_from_, cell_of(p), kNowhere); }
 
-std::uint32_t Relief::pit_near(const Point& p, float reach) const {
-  const std::optional<Point> over = over_pit_near(p, reach);
-  return over ? at(pit_, cell_of(*over), kNoPit) : kNoPit;
+std::uint32_t Relief::hold_near(const Point& p, float reach) const {
+  const std::optional<Point> over = over_hold_near(p, reach);
+  return over ? at(hold_, cell_of(*over), kNoHold) : kNoHold;
 }
 
-/// Whether one of the tiles that hold the cells from `low` to `high` has a cell inside a pit.
-bool Relief::any_pit(Cell low, Cell high) const {
+/// Whether one of the tiles that hold the cells from `low` to `high` has a cell inside a hold.
+bool Relief::any_hold(Cell low, Cell high) const {
   for (int row = low.row >> kTileBits; row <= high.row >> kTileBits; ++row) {
     for (int column = low.column >> kTileBits; column <= high.column >> kTileBits; ++column) {
       const std::uint32_t tile = tiles_.find(column, row, 0);
-      if (tile != BlockIndex::kNone && tile_has_pit_[tile] != 0) {
+      if (tile != BlockIndex::kNone && tile_has_hold_[tile] != 0) {
         return true;
       }
     }
@@ -463,18 +464,18 @@ bool Relief::any_pit(Cell low, Cell high) const {
   return false;
 }
 
-std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
+std::optional<Point> Relief::over_hold_near(const Point& p, float reach) const {
   const Cell here = cell_of(p);
   const int far = cells(reach);
   std::optional<Point> best;
-  if (!any_pit({here.column - far, here.row - far}, {here.column + far, here.row + far})) {
+  if (!any_hold({here.column - far, here.row - far}, {here.column + far, here.row + far})) {
     return best;
   }
   float best2 = reach * reach;
   for (int dr = -far; dr <= far; ++dr) {
     for (int dc = -far; dc <= far; ++dc) {
       const Cell c{here.column + dc, here.row + dr};
-      if (const std::size_t place = place_of(c); place == kNoPlace || inside_pit_[place] == 0) {
+      if (const std::size_t place = place_of(c); place == kNoPlace || inside_hold_[place] == 0) {
         continue;
       }
       const Point q(corner_.x() + (static_cast<float>(c.column) + 0.5F) * kCell,
@@ -491,9 +492,9 @@ std::optional<Point> Relief::over_pit_near(const Point& p, float reach) const {
 
 std::size_t Relief::memory() const {
   const std::size_t floats =
-      top_.capacity() + horizon_.capacity() + rim_.capacity() + covers_from_.capacity();
-  return floats * sizeof(float) + pit_.capacity() * sizeof(std::uint32_t) + inside_pit_.capacity() +
-         tall_.capacity() + tile_has_pit_.capacity() + corners_.capacity() * sizeof(Cell) + tiles_.memory();
+      top_.capacity() + horizon_.capacity() + rim_height_.capacity() + covers_from_.capacity();
+  return floats * sizeof(float) + hold_.capacity() * sizeof(std::uint32_t) + inside_hold_.capacity() +
+         tall_.capacity() + tile_has_hold_.capacity() + corners_.capacity() * sizeof(Cell) + tiles_.memory();
 }
 
 }  // namespace hulltrack

@@ -3,14 +3,14 @@
 // The map becomes a grid of level cells of kCell x kCell, each with the height of its highest point.
 //   horizon:       of a cell. In each of eight level directions the highest point within kReach counts; the
 //                  horizon is the lowest of these eight heights.
-//   pit:           cells whose horizon is at least kDepth above their highest point: an open hatch.
-//   inside:        a cell of a pit whose eight neighbours are pit, too.
-//   rim:           the top of the coaming around a pit. Its height comes from the horizons in the pit.
-//   covers' place: what is higher than a rim and within kCoversReach of its pit. Hatch covers stand there.
-// Cargo in pits and covers in their place change from day to day: they do not tell which ship this is.
+//   hold:          cells whose horizon is at least kDepth above their highest point: an open hatch.
+//   inside:        a cell of a hold whose eight neighbours are hold, too.
+//   rim height:    of the top of the coaming around a hold. It comes from the horizons in the hold.
+//   covers' place: what is higher than a rim and within kCoversReach of its hold. Hatch covers stand there.
+// Cargo in holds and covers in their place change from day to day: they do not tell which ship this is.
 // Cells are stored in tiles of kTile x kTile cells, only where the map has points in or beside the tile, or
 // on all four sides of it. Input in frame H, metres, within 100 km of the origin. Immutable. Cannot fail: a
-// map without pits has none. Cost: some 0.1 s for a ship of 200 m; 6 kB a tile. A point adds at most nine
+// map without holds has none. Cost: some 0.1 s for a ship of 200 m; 6 kB a tile. A point adds at most nine
 // tiles, however the points are scattered.
 #pragma once
 
@@ -39,26 +39,26 @@ class Relief {
   explicit Relief(std::span<const Point> cloud_H);
 
   /// Whether p lies kDepth or more below the horizon of its cell.
-  [[nodiscard]] bool in_pit(const Point& p) const;
+  [[nodiscard]] bool in_hold(const Point& p) const;
 
-  /// Whether p stands higher than the lowest rim of the pits within kCoversReach.
+  /// Whether p stands higher than the lowest rim of the holds within kCoversReach.
   [[nodiscard]] bool in_covers_place(const Point& p) const;
 
   /// Whether p is in the covers' place, or in or beside a cell whose highest point is. Covers folded beside a
   /// hatch may reach down to the deck; when they are moved, the surfaces behind them come into view.
   [[nodiscard]] bool under_covers_place(const Point& p) const;
 
-  /// Height of the rim of the pit in whose cells p lies, seen from above, m; NaN where there is no pit.
-  [[nodiscard]] float rim_around(const Point& p) const {
-    return at(rim_, cell_of(p), std::numeric_limits<float>::quiet_NaN());
+  /// Height of the rim of the hold in whose cells p lies, seen from above, m; NaN where there is no hold.
+  [[nodiscard]] float rim_height_around(const Point& p) const {
+    return at(rim_height_, cell_of(p), std::numeric_limits<float>::quiet_NaN());
   }
 
-  static constexpr std::uint32_t kNoPit = 0xFFFFFFFFU;
-  /// Number of the pit that is nearest to p within `reach` (m) on the level; kNoPit where there is none.
-  [[nodiscard]] std::uint32_t pit_near(const Point& p, float reach) const;
+  static constexpr std::uint32_t kNoHold = 0xFFFFFFFFU;
+  /// Number of the hold that is nearest to p within `reach` (m) on the level; kNoHold where there is none.
+  [[nodiscard]] std::uint32_t hold_near(const Point& p, float reach) const;
 
-  /// The middle of the nearest cell inside a pit within `reach` (m), at p's height; nothing without one.
-  [[nodiscard]] std::optional<Point> over_pit_near(const Point& p, float reach) const;
+  /// The middle of the nearest cell inside a hold within `reach` (m), at p's height; nothing without one.
+  [[nodiscard]] std::optional<Point> over_hold_near(const Point& p, float reach) const;
 
   /// Heap memory that this holds, bytes.
   [[nodiscard]] std::size_t memory() const;
@@ -100,14 +100,14 @@ class Relief {
   void make_tiles(std::span<const Point> cloud_H);
   [[nodiscard]] std::vector<std::uint8_t> open_tiles() const;
   void find_horizons();
-  void find_pits();
+  void find_holds();
   void find_insides();
   void smooth_rims();
-  void number_pits();
+  void number_holds();
   void raise_covers_place();
   void find_tall_columns();
   [[nodiscard]] std::vector<float> rims_of_insides() const;
-  [[nodiscard]] bool any_pit(Cell low, Cell high) const;
+  [[nodiscard]] bool any_hold(Cell low, Cell high) const;
 
   Point corner_ = Point::Zero();
   int columns_ = 0;  // of the map's bounding rectangle
@@ -116,14 +116,14 @@ class Relief {
   std::vector<Cell> corners_;  // per tile: its first cell; row by row
 
   // Per cell, tile by tile.
-  std::vector<float> top_;                  // height of its highest point, m; -infinity without points
-  std::vector<float> horizon_;              // m; -infinity if the map has nothing in one of the directions
-  std::vector<float> rim_;                  // in a pit: height of the rim, m; NaN elsewhere
-  std::vector<std::uint8_t> inside_pit_;    // 1: it and its eight neighbours are pit
-  std::vector<std::uint32_t> pit_;          // inside a pit: the pit's number; kNoPit elsewhere
-  std::vector<std::uint8_t> tall_;          // 1: its highest point, or a neighbour's, is in covers' place
-  std::vector<float> covers_from_;          // covers' place begins at this height, m; infinity = not here
-  std::vector<std::uint8_t> tile_has_pit_;  // per tile: 1 if one of its cells is inside a pit
+  std::vector<float> top_;                   // height of its highest point, m; -infinity without points
+  std::vector<float> horizon_;               // m; -infinity if the map has nothing in one of the directions
+  std::vector<float> rim_height_;            // in a hold, m; NaN elsewhere
+  std::vector<std::uint8_t> inside_hold_;    // 1: it and its eight neighbours are hold
+  std::vector<std::uint32_t> hold_;          // inside a hold: the hold's number; kNoHold elsewhere
+  std::vector<std::uint8_t> tall_;           // 1: its highest point, or a neighbour's, is in covers' place
+  std::vector<float> covers_from_;           // covers' place begins at this height, m; infinity = not here
+  std::vector<std::uint8_t> tile_has_hold_;  // per tile: 1 if one of its cells is inside a hold
 };
 
 }  // namespace hulltrack

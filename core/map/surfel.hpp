@@ -41,8 +41,8 @@ struct Surfel {
   bool movable = false;
   /// Another surface lies close behind. It can be seen only from the side to which the normal points.
   bool backed = false;
-  static constexpr std::uint32_t kNoPatch = 0xFFFFFFFFU;
-  std::uint32_t patch = kNoPatch;  // number of the patch that it belongs to (patches.hpp)
+  static constexpr std::uint32_t kNoLandmark = 0xFFFFFFFFU;
+  std::uint32_t landmark = kNoLandmark;  // number of the landmark that it belongs to (landmarks.hpp)
 };
 
 }  // namespace hulltrack

@@ -16,7 +16,7 @@ namespace hulltrack {
 inline constexpr float kSurfelRadius = 0.3F;  // m
 
 /// One surfel for each of `points_H`; `map` is the tree over the map's cloud. Sets neither Surfel::movable,
-/// backed nor patch (patches.hpp).
+/// backed nor landmark (landmarks.hpp).
 [[nodiscard]] std::vector<Surfel> compute_surfels(const Cloud& points_H, const KdTree& map);
 
 }  // namespace hulltrack

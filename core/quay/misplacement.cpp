@@ -84,11 +84,11 @@ std::vector<Misplacement::Measurement> measurements(const Fit& fit) {
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(inverse.asDiagonal() * fit.H * inverse.asDiagonal());
   std::vector<Misplacement::Measurement> measured;
   for (int i = 0; i < 6; ++i) {
-    const double worth = eigen.eigenvalues()[i];
-    if (worth >= PlaneSystem::kFewestPairs) {
+    const double eigenvalue = eigen.eigenvalues()[i];
+    if (eigenvalue >= PlaneSystem::kFewestPairs) {
       const Twist direction = scale.cwiseProduct(eigen.eigenvectors().col(i));
-      const double sigma = std::hypot(PlaneSystem::kInflation * PlaneSystem::kPairSigma / std::sqrt(worth),
-                                      Misplacement::kShared);
+      const double sigma = std::hypot(
+          PlaneSystem::kInflation * PlaneSystem::kPairSigma / std::sqrt(eigenvalue), Misplacement::kShared);
       measured.push_back({direction, direction.dot(fit.twist), sigma});
     }
   }

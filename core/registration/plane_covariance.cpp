@@ -17,37 +17,37 @@ Twist scale() {
 
 }  // namespace
 
-void PlaneCovarianceEstimator::reset(std::uint32_t patches) {
-  for (const std::uint32_t patch : touched_) {
-    sums_[patch].setZero();
-    pairs_[patch] = 0;
+void PlaneCovarianceEstimator::reset(std::uint32_t clusters) {
+  for (const std::uint32_t cluster : touched_) {
+    sums_[cluster].setZero();
+    pairs_[cluster] = 0;
   }
   touched_.clear();
-  sums_.resize(patches, Vector7::Zero());
-  pairs_.resize(patches, 0);
+  sums_.resize(clusters, Vector7::Zero());
+  pairs_.resize(clusters, 0);
   A_.setZero();
   B_.setZero();
 }
 
-void PlaneCovarianceEstimator::add(const PlaneSystem& system, std::uint32_t patch, const Eigen::Vector3d& p,
+void PlaneCovarianceEstimator::add(const PlaneSystem& system, std::uint32_t cluster, const Eigen::Vector3d& p,
                                    const Eigen::Vector3d& n, double r, double rise) {
   const Vector7 j = system.jacobian(p, n, rise);
   A_.noalias() += system.slope_of(r) * j * j.transpose();
   const Vector7 s = -system.weight_of(r) * r * j;
   B_.noalias() += s * s.transpose();
-  sums_[patch] += s;
-  if (pairs_[patch]++ == 0) {
-    touched_.push_back(patch);
+  sums_[cluster] += s;
+  if (pairs_[cluster]++ == 0) {
+    touched_.push_back(cluster);
   }
 }
 
 PlaneCovariance PlaneCovarianceEstimator::estimate() const {
-  constexpr double kParameters = 6.0;  // each takes up one degree of freedom: n - 6 are left of n patches
+  constexpr double kParameters = 6.0;  // each takes up one degree of freedom: n - 6 are left of n clusters
   PlaneCovariance out;
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(Matrix6(A_.topLeftCorner<6, 6>()));
   // The robust cost curves less than a sum of squares: only pairs within about half a kernel add curvature.
   // So a fifth of kFewestPairs is enough.
-  if (touched_.size() < kFewestPatches || !(eigen.eigenvalues()[0] >= 0.2 * PlaneSystem::kFewestPairs)) {
+  if (touched_.size() < kFewestClusters || !(eigen.eigenvalues()[0] >= 0.2 * PlaneSystem::kFewestPairs)) {
     return out;
   }
   const Matrix6 A_inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
@@ -55,12 +55,12 @@ PlaneCovariance PlaneCovarianceEstimator::estimate() const {
   const Twist by_bend = A_inverse * A_.topRightCorner<6, 1>();
   Vector7 bend_alone;  // times a sum of s: what is left for the bend once the pose has adapted
   bend_alone << -by_bend, 1.0;
-  Matrix6 B_patches = Matrix6::Zero();
+  Matrix6 B_clusters = Matrix6::Zero();
   double bend_spread = 0.0;
   double bend_sum = 0.0;
-  for (const std::uint32_t patch : touched_) {
-    const Vector7& s = sums_[patch];
-    B_patches.noalias() += s.head<6>() * s.head<6>().transpose();
+  for (const std::uint32_t cluster : touched_) {
+    const Vector7& s = sums_[cluster];
+    B_clusters.noalias() += s.head<6>() * s.head<6>().transpose();
     const double bend = bend_alone.dot(s);
     bend_spread += bend * bend;
     bend_sum += bend;
@@ -68,7 +68,7 @@ PlaneCovariance PlaneCovarianceEstimator::estimate() const {
   const auto n = static_cast<double>(touched_.size());
   const Matrix6 B = B_.topLeftCorner<6, 6>();
   out.valid = true;
-  out.shared = n / (n - kParameters) * (B.ldlt().solve(B_patches)).trace() / 6.0;
+  out.shared = n / (n - kParameters) * (B.ldlt().solve(B_clusters)).trace() / 6.0;
   out.pose = scale().asDiagonal() * (A_inverse * B * A_inverse) * scale().asDiagonal();
   out.by_bend = scale().asDiagonal() * by_bend;
   const double bend_curvature = bend_alone.dot(A_.col(6));

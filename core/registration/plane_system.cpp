@@ -12,29 +12,29 @@ int solve_held(const Eigen::Matrix<double, N, N>& H, const Eigen::Matrix<double,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(H);
   int free = 0;
   for (int i = 0; i < N; ++i) {
-    const double worth = eigen.eigenvalues()[i];
-    if (!(worth >= PlaneSystem::kFewestPairs)) {
+    const double eigenvalue = eigen.eigenvalues()[i];
+    if (!(eigenvalue >= PlaneSystem::kFewestPairs)) {
       ++free;
       continue;
     }
     const Eigen::Matrix<double, N, 1> direction = eigen.eigenvectors().col(i);
-    x += direction.dot(g) / worth * direction;
+    x += direction.dot(g) / eigenvalue * direction;
   }
   return free;
 }
 
 }  // namespace
 
-PlaneSystem::Solution PlaneSystem::solve(double bend_off, double bend_worth) const {
-  if (!std::isfinite(bend_worth)) {
+PlaneSystem::Solution PlaneSystem::solve(double bend_off, double bend_information) const {
+  if (!std::isfinite(bend_information)) {
     return solve();
   }
   // The bend is eliminated (Schur complement). Parts of the ship far from the reference point then count less
   // for the pose, because a bend can explain their residuals as well.
   const Matrix6 H_pp = H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>();
   const Twist h_pb = H_.topRightCorner<6, 1>();
-  const double h_bb = H_(6, 6) + bend_worth;
-  const double g_b = g_[6] - bend_worth * bend_off;
+  const double h_bb = H_(6, 6) + bend_information;
+  const double g_b = g_[6] - bend_information * bend_off;
   Solution solution;
   if (!(h_bb > 0.0)) {
     return solve();

@@ -65,10 +65,10 @@ class PlaneSystem {
     double bend = 0.0;            // change of the map's bend, m
     int free = 0;                 // number of free directions, of six (solve_shift(): of three)
   };
-  /// Solves for pose and bend, with a bend known beforehand. `bend_worth`: the variance of a pair over the
-  /// variance of the known bend; infinite: the bend is not changed. `bend_off`: the present bend less the
+  /// Solves for pose and bend, with a bend known beforehand. `bend_information`: the variance of a pair over
+  /// the variance of the known bend; infinite: the bend is not changed. `bend_off`: the present bend less the
   /// known one, m.
-  [[nodiscard]] Solution solve(double bend_off, double bend_worth) const;
+  [[nodiscard]] Solution solve(double bend_off, double bend_information) const;
   /// Solves for the pose; the bend is not changed.
   [[nodiscard]] Solution solve() const;
   /// Solves for a translation alone.

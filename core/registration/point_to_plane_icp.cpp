@@ -91,10 +91,10 @@ PlaneSystem PointToPlaneIcp::system_of(std::span<const Correspondence> pairs, co
 PlaneCovariance PointToPlaneIcp::covariance_of(std::span<const Correspondence> pairs, const PlaneMap& map,
                                                const Estimate& at) {
   const PlaneSystem system = system_of(pairs, map, at, kKernels.back());
-  estimator_.reset(map.patches());
+  estimator_.reset(map.clusters());
   for_each_pair(pairs, map, at,
                 [&](const Eigen::Vector3d& p, const PlaneMap::Plane& plane, double r, double rise) {
-                  estimator_.add(system, plane.patch, p, plane.normal_H.cast<double>(), r, rise);
+                  estimator_.add(system, plane.cluster, p, plane.normal_H.cast<double>(), r, rise);
                 });
   return estimator_.estimate();
 }
@@ -109,7 +109,7 @@ PlaneIcpResult PointToPlaneIcp::align(std::span<const Point> source, const Plane
   result.T_target_source = T_init;
   result.stop = IcpStop::iteration_limit;
   out.bend = bend.d;
-  const double bend_worth =
+  const double bend_information =
       bend.sigma > 0.0 ? PlaneSystem::kPairSigma * PlaneSystem::kPairSigma / (bend.sigma * bend.sigma)
                        : std::numeric_limits<double>::infinity();
   correspondences_.reset(source, map.tree());
@@ -121,7 +121,7 @@ PlaneIcpResult PointToPlaneIcp::align(std::span<const Point> source, const Plane
     at = {Pose::Identity(), out.bend};
     for (int step = 0; step < kInnerSteps; ++step) {
       const PlaneSystem system = system_of(pairs, map, at, kernel_of_round(round));
-      const PlaneSystem::Solution solution = system.solve(at.bend - bend.d, bend_worth);
+      const PlaneSystem::Solution solution = system.solve(at.bend - bend.d, bend_information);
       report(system, solution, result);
       if (solution.free == 6) {
         result.stop = IcpStop::too_few_matches;
@@ -193,7 +193,7 @@ PlaneScore PointToPlaneIcp::score(std::span<const Point> source, const PlaneMap&
     }
     const OnPlane at = on_plane(moved_[i].cast<double>(), map.planes()[nearest_[i].index], kBesides);
     if (!at.beside) {
-      score.worth += kScoreKernel * kScoreKernel / (kScoreKernel * kScoreKernel + at.residual * at.residual);
+      score.sum += kScoreKernel * kScoreKernel / (kScoreKernel * kScoreKernel + at.residual * at.residual);
     }
   }
   return score;

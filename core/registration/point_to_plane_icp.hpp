@@ -37,7 +37,7 @@ struct PlaneIcpResult {
 /// How well a pose explains a cloud. A point at distance r from its nearest plane counts k^2 / (k^2 + r^2),
 /// with k = PointToPlaneIcp::kScoreKernel: 1 on the plane, a half at k. A point without a plane counts 0.
 struct PlaneScore {
-  double worth = 0.0;        // sum over the points
+  double sum = 0.0;          // sum over the points
   std::uint32_t points = 0;  // all points of the cloud
 };
 

@@ -56,7 +56,7 @@ IcpResult PointToPointIcp::align(std::span<const Point> source, const KdTree& ta
     const Sums sums(correspondences_.find(result.T_target_source));
     ++result.iterations;
     report(sums, result);
-    const std::optional<RigidMotion> increment = sums.fit.solve();
+    const std::optional<RigidTransform> increment = sums.fit.solve();
     if (!increment) {
       result.stop = result.matched < 3 ? IcpStop::too_few_matches : IcpStop::degenerate_geometry;
       break;

@@ -11,11 +11,11 @@ constexpr double kLine = 1e-10;
 
 }  // namespace
 
-Pose RigidMotion::pose() const { return pose_about(centre, rotation, translation); }
+Pose RigidTransform::pose() const { return pose_about(centre, rotation, translation); }
 
 Eigen::Vector3d RigidFit::centroid() const { return origin_ + sum_p_ / pairs_; }
 
-std::optional<RigidMotion> RigidFit::solve() const {
+std::optional<RigidTransform> RigidFit::solve() const {
   if (pairs_ < 3) {
     return std::nullopt;
   }
@@ -30,8 +30,8 @@ std::optional<RigidMotion> RigidFit::solve() const {
   // If the best orthogonal matrix is a mirror image, the last axis is reversed to make it a rotation.
   const double handedness = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   const Eigen::Vector3d signs(1.0, 1.0, handedness);
-  return RigidMotion{svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose(), mean_m - mean_p,
-                     origin_ + mean_p};
+  return RigidTransform{svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose(), mean_m - mean_p,
+                        origin_ + mean_p};
 }
 
 Matrix6 RigidFit::normal_matrix() const {

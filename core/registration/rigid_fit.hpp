@@ -15,7 +15,7 @@
 namespace hulltrack {
 
 /// A motion p -> rotation * (p - centre) + centre + translation: the translation is that of `centre`.
-struct RigidMotion {
+struct RigidTransform {
   Eigen::Matrix3d rotation;
   Eigen::Vector3d translation;  // m
   Eigen::Vector3d centre;       // m
@@ -46,7 +46,7 @@ class RigidFit {
   [[nodiscard]] Eigen::Vector3d centroid() const;
 
   /// The best motion, with the moving points' centroid as its centre; nothing if a rotation is free.
-  [[nodiscard]] std::optional<RigidMotion> solve() const;
+  [[nodiscard]] std::optional<RigidTransform> solve() const;
 
   /// J^T J of the residuals `moving - fixed` for a twist [rotation; translation] of the moving points about
   /// centroid(), rad and m. Its inverse times the residuals' variance (m^2) is the covariance of the motion,

@@ -17,13 +17,13 @@ constexpr double kJumpNoise = 0.10;  // m
 const double kTurnNoise = radians(0.3);  // rad
 const double kTurnRate = radians(1.0);   // rad/s
 // Noise of the measured rate of yaw; it is taken off before the hull's ends count as too fast. Three sigma of
-// MotionRecord's rate if each yaw has 0.016 deg of noise. In 50,000 simulated healthy frames the rate was off
-// by more only once, by 0.1003 deg/s.
+// HullSpeedRecord's rate if each yaw has 0.016 deg of noise. In 50,000 simulated healthy frames the rate was
+// off by more only once, by 0.1003 deg/s.
 const double kYawRateNoise = radians(0.1);  // rad/s
 
-/// Collects findings: the worst state, all fault bits, and the reason of the first check that gave that
+/// Collects objections: the worst state, all fault bits, and the reason of the first check that gave that
 /// state.
-struct Findings {
+struct Objections {
   State state = State::tracking;
   Faults faults = 0;
   std::string reason;
@@ -37,35 +37,35 @@ struct Findings {
   }
 };
 
-void check_registration(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+void check_registration(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
   const auto least = static_cast<std::uint32_t>(std::max(0, limits.health.min_matched));
   if (!e.registered || e.matched < least) {
-    findings.add(State::lost, fault::few_matches,
-                 counted(e.matched, "matched point") + format_text(", min_matched is %u", least));
+    objections.add(State::lost, fault::few_matches,
+                   counted(e.matched, "matched point") + format_text(", min_matched is %u", least));
   }
   if (!e.converged) {
-    findings.add(e.registered ? State::degraded : State::lost, fault::not_converged, e.trouble);
+    objections.add(e.registered ? State::degraded : State::lost, fault::not_converged, e.trouble);
   }
 }
 
 /// Compares Q1 with what this sensor should see at this pose. If few surfels within metric_range leave that
 /// unknown, the check is skipped: integrity looks farther, and it objects itself if it has few surfels. If it
 /// is unknown for another reason, the frame is degraded unless the site has set q1_healthy.
-void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Findings& findings) {
+void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Objections& objections) {
   if (!metrics.q1_expected) {
     if (!metrics.few_surfels && !health.q1_healthy) {
-      findings.add(State::degraded, fault::q1_high,
-                   format_text("Q1 is %.3f m; nothing tells what it should be, and q1_healthy is not set",
-                               metrics.q1));
+      objections.add(State::degraded, fault::q1_high,
+                     format_text("Q1 is %.3f m; nothing tells what it should be, and q1_healthy is not set",
+                                 metrics.q1));
     }
     return;
   }
   const double ratio = metrics.q1 / *metrics.q1_expected;
   const auto check = [&](State at_best, double limit, const char* name) {
     if (!(ratio <= limit)) {
-      findings.add(at_best, fault::q1_high,
-                   format_text("Q1 %.3f m is %.2f times the %.3f m that this sensor should see, %s is %.2f",
-                               metrics.q1, ratio, *metrics.q1_expected, name, limit));
+      objections.add(at_best, fault::q1_high,
+                     format_text("Q1 %.3f m is %.2f times the %.3f m that this sensor should see, %s is %.2f",
+                                 metrics.q1, ratio, *metrics.q1_expected, name, limit));
     }
   };
   check(State::lost, health.q1_ratio_lost, "q1_ratio_lost");
@@ -73,37 +73,37 @@ void check_ratio(const HealthConfig& health, const DistanceMetrics& metrics, Fin
 }
 
 /// Compares Q1 with the limits that a site sets.
-void check_q1(const HealthConfig& health, double q1, Findings& findings) {
+void check_q1(const HealthConfig& health, double q1, Objections& objections) {
   const auto check = [&](State at_best, const std::optional<double>& limit, const char* name) {
     if (limit && !(q1 <= *limit)) {
-      findings.add(at_best, fault::q1_high, format_text("Q1 %.3f m is above %s %.3f m", q1, name, *limit));
+      objections.add(at_best, fault::q1_high, format_text("Q1 %.3f m is above %s %.3f m", q1, name, *limit));
     }
   };
   check(State::lost, health.q1_lost, "q1_lost");
   check(State::degraded, health.q1_healthy, "q1_healthy");
 }
 
-void check_distances(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+void check_distances(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
   if (!e.metrics.valid) {
-    findings.add(State::lost, fault::q1_high, "no part of the map is in view");
+    objections.add(State::lost, fault::q1_high, "no part of the map is in view");
     return;
   }
-  check_ratio(limits.health, e.metrics, findings);
-  check_q1(limits.health, e.metrics.q1, findings);
+  check_ratio(limits.health, e.metrics, objections);
+  check_q1(limits.health, e.metrics.q1, objections);
 }
 
-void check_integrity(const Evidence& e, Findings& findings) {
+void check_integrity(const FrameFindings& e, Objections& objections) {
   if (e.integrity.faults != 0) {
     const bool contradicted = (e.integrity.faults & fault::contradicted) != 0;
-    findings.add(contradicted ? State::lost : State::degraded, e.integrity.faults, e.integrity.reason);
+    objections.add(contradicted ? State::lost : State::degraded, e.integrity.faults, e.integrity.reason);
   }
 }
 
 /// A frame is degraded while the witnesses (the quay, or the hull's motion with a joint) contradict the
 /// machine. A frame in which a quay map confirms all joints ends a run: no joint is wrong then.
-void check_machine(HealthMemory& memory, const Evidence& e, Findings& findings) {
+void check_machine(HealthMemory& memory, const FrameFindings& e, Objections& objections) {
   if (e.machine.faults != 0) {
-    findings.add(State::degraded, e.machine.faults, e.machine.reason);
+    objections.add(State::degraded, e.machine.faults, e.machine.reason);
   }
   if (e.machine.confirmed) {
     memory.run.reset();
@@ -111,12 +111,12 @@ void check_machine(HealthMemory& memory, const Evidence& e, Findings& findings) 
   }
 }
 
-void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+void check_envelope(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
   const Eigen::Vector3d& d = e.displacement;
   const bool inside =
       (d.array() >= limits.envelope_min.array()).all() && (d.array() <= limits.envelope_max.array()).all();
   if (!inside) {
-    findings.add(
+    objections.add(
         State::lost, fault::implausible,
         format_text("displacement %.2f, %.2f, %.2f m is outside hull.envelope", d.x(), d.y(), d.z()));
   }
@@ -124,24 +124,24 @@ void check_envelope(const HealthLimits& limits, const Evidence& e, Findings& fin
 
 /// Lost if roll, pitch or yaw of T_W_H is beyond max_heel, max_trim or max_yaw. No moored ship lies like
 /// that: slew, luff or a mount is not what the configuration says, or the alignment went wrong.
-void check_attitude(const HealthLimits& limits, const Evidence& e, Findings& findings) {
+void check_attitude(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
   static constexpr std::array<std::pair<const char*, const char*>, 3> kWords = {
       {{"heel", "max_heel"}, {"be trimmed", "max_trim"}, {"be turned", "max_yaw"}}};
   const Eigen::Vector3d rpy = rpy_from_rotation(e.rotation);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (!(std::abs(rpy[axis]) <= limits.max_rpy[axis])) {
       const auto& [seems_to, key] = kWords[static_cast<std::size_t>(axis)];
-      findings.add(State::lost, fault::implausible,
-                   format_text("the hull seems to %s by %.1f deg, hull.%s is %.1f deg: is a sign, scale or "
-                               "bias of slew or luff wrong, or a LiDAR's mount?",
-                               seems_to, degrees(rpy[axis]), key, degrees(limits.max_rpy[axis])));
+      objections.add(State::lost, fault::implausible,
+                     format_text("the hull seems to %s by %.1f deg, hull.%s is %.1f deg: is a sign, scale or "
+                                 "bias of slew or luff wrong, or a LiDAR's mount?",
+                                 seems_to, degrees(rpy[axis]), key, degrees(limits.max_rpy[axis])));
     }
   }
 }
 
 /// Compares the pose with the last accepted one. If the hull could have moved by kUnseen since then, that
 /// pose is forgotten and `unique` ends. If the hull moved or turned more than a moored one can: degraded.
-void check_continuity(HealthMemory& memory, const Evidence& e, Findings& findings) {
+void check_continuity(HealthMemory& memory, const FrameFindings& e, Objections& objections) {
   if (!memory.track.followed) {
     return;
   }
@@ -150,22 +150,23 @@ void check_continuity(HealthMemory& memory, const Evidence& e, Findings& finding
   if (reach > kUnseen) {
     memory.track.unique = false;
     memory.track.followed.reset();
-    memory.track.motion = MotionRecord{};
+    memory.track.speed_record = HullSpeedRecord{};
     return;
   }
   const double jump = (e.displacement - memory.track.followed->displacement).norm();
   if (!memory.track.unique && jump > reach) {  // the search found another place: no fault, no speed
-    memory.track.motion = MotionRecord{};
+    memory.track.speed_record = HullSpeedRecord{};
     return;
   }
   if (jump > reach) {
-    findings.add(State::degraded, fault::implausible,
-                 format_text("pose jumped by %.2f m in %.1f s, at most %.2f m is possible", jump, dt, reach));
+    objections.add(
+        State::degraded, fault::implausible,
+        format_text("pose jumped by %.2f m in %.1f s, at most %.2f m is possible", jump, dt, reach));
   }
   const double turn = rotation_angle(memory.track.followed->rotation.transpose() * e.rotation);
   if (turn > kTurnRate * dt + kTurnNoise) {
-    findings.add(State::degraded, fault::implausible,
-                 format_text("pose turned by %.2f deg in %.1f s", degrees(turn), dt));
+    objections.add(State::degraded, fault::implausible,
+                   format_text("pose turned by %.2f deg in %.1f s", degrees(turn), dt));
   }
 }
 
@@ -175,13 +176,13 @@ struct FastPart {
   double speed;
   std::string words;
 };
-std::optional<FastPart> fast_part(const HealthLimits& limits, const MotionRecord::Motion& motion) {
-  const double speed = motion.velocity.norm();
+std::optional<FastPart> fast_part(const HealthLimits& limits, const HullSpeed& hull) {
+  const double speed = hull.velocity.norm();
   if (speed > limits.max_speed) {
     return FastPart{
         speed, format_text("the hull moves at %.2f m/s, max_speed is %.2f m/s", speed, limits.max_speed)};
   }
-  const double turning = std::abs(motion.rpy_rate.z());
+  const double turning = std::abs(hull.rpy_rate.z());
   const double ends = turning * limits.half_length;
   if (ends - kYawRateNoise * limits.half_length > limits.max_speed) {
     return FastPart{ends, format_text("the hull turns at %.2f deg/s and its ends at %.2f m/s, max_speed is "
@@ -191,10 +192,10 @@ std::optional<FastPart> fast_part(const HealthLimits& limits, const MotionRecord
   return std::nullopt;
 }
 
-/// Adds speed times the time since the last fast frame to the run. A pause of up to MotionRecord::kWindow
+/// Adds speed times the time since the last fast frame to the run. A pause of up to HullSpeedRecord::kWindow
 /// does not end a run, because noise makes a fast hull look slow for some frames.
 void note_run(HealthMemory& memory, MeasurementTime time, double speed) {
-  if (!memory.run || time - memory.run->last > MotionRecord::kWindow) {
+  if (!memory.run || time - memory.run->last > HullSpeedRecord::kWindow) {
     memory.run = {0.0, time};
   }
   memory.run->length += speed * std::max(0.0, to_seconds(time - memory.run->last));
@@ -202,15 +203,16 @@ void note_run(HealthMemory& memory, MeasurementTime time, double speed) {
   memory.ran_away = memory.ran_away || memory.run->length > kLongestRun;
 }
 
-void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTime time, Findings& findings) {
-  if (const auto motion = memory.track.motion.motion()) {
-    if (auto fast = fast_part(limits, *motion)) {
+void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTime time,
+                 Objections& objections) {
+  if (const auto speed = memory.track.speed_record.speed()) {
+    if (auto fast = fast_part(limits, *speed)) {
       note_run(memory, time, fast->speed);
-      findings.add(State::degraded, fault::implausible, std::move(fast->words));
+      objections.add(State::degraded, fault::implausible, std::move(fast->words));
     }
   }
   if (memory.ran_away) {
-    findings.add(
+    objections.add(
         State::lost, fault::implausible,
         format_text("the hull seems to have run more than %.0f m faster than max_speed: she is or was "
                     "under way, or an encoder stands still while the loader moves. When she is moored "
@@ -221,19 +223,19 @@ void check_speed(const HealthLimits& limits, HealthMemory& memory, MeasurementTi
 
 /// While the place is not certain: degraded until all starts of the search are tried, then lost if another
 /// place explains the scan as well. If none does and no check objects, the place is certain (`unique`).
-void check_uniqueness(HealthMemory& memory, const SearchEvidence& search, Findings& findings) {
+void check_uniqueness(HealthMemory& memory, const SearchProgress& search, Objections& objections) {
   if (memory.track.unique) {
     return;
   }
   if (search.tried < search.starts) {
-    findings.add(State::degraded, 0,
-                 format_text("searching the berth: %zu of %zu places tried", search.tried, search.starts));
+    objections.add(State::degraded, 0,
+                   format_text("searching the berth: %zu of %zu places tried", search.tried, search.starts));
   } else if (search.rival) {
     const Eigen::Vector3d& d = *search.rival;
-    findings.add(
+    objections.add(
         State::lost, fault::ambiguous,
         format_text("the hull may as well lie at displacement %.1f, %.1f, %.1f m", d.x(), d.y(), d.z()));
-  } else if (findings.state == State::tracking) {
+  } else if (objections.state == State::tracking) {
     memory.track.unique = true;
   }
 }
@@ -244,52 +246,52 @@ HealthVerdict idle(HealthMemory& memory, State state, Faults faults, std::string
   return {state, faults, std::move(reason)};
 }
 
-HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const Evidence& e) {
-  Findings findings;
-  findings.faults = e.standing;
-  check_registration(limits, e, findings);
-  check_machine(memory, e, findings);
+HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const FrameFindings& e) {
+  Objections objections;
+  objections.faults = e.standing;
+  check_registration(limits, e, objections);
+  check_machine(memory, e, objections);
   if (e.registered) {
-    check_distances(limits, e, findings);
-    check_integrity(e, findings);
-    check_continuity(memory, e, findings);
-    if (findings.state != State::lost && (findings.faults & fault::implausible) == 0) {
+    check_distances(limits, e, objections);
+    check_integrity(e, objections);
+    check_continuity(memory, e, objections);
+    if (objections.state != State::lost && (objections.faults & fault::implausible) == 0) {
       memory.track.followed = FollowedPose{e.time, e.displacement, e.rotation};
-      memory.track.motion.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
+      memory.track.speed_record.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
     }
-    check_envelope(limits, e, findings);
-    check_attitude(limits, e, findings);
-    check_speed(limits, memory, e.time, findings);
+    check_envelope(limits, e, objections);
+    check_attitude(limits, e, objections);
+    check_speed(limits, memory, e.time, objections);
   }
 
   const bool a_lidar_is_silent = (e.standing & fault::lidar_silent) != 0;
-  memory.good_frames = findings.state == State::tracking && !a_lidar_is_silent ? memory.good_frames + 1 : 0;
+  memory.good_frames = objections.state == State::tracking && !a_lidar_is_silent ? memory.good_frames + 1 : 0;
   if (e.registered && e.integrity.undecided) {
-    findings.add(State::degraded, 0, e.integrity.reason);
+    objections.add(State::degraded, 0, e.integrity.reason);
   }
-  check_uniqueness(memory, e.search, findings);
+  check_uniqueness(memory, e.search, objections);
   if (e.joints_on_trial) {  // still a good frame: health is back at once when the values prove right
-    findings.add(State::degraded, fault::plc_value, e.joint_trouble);
+    objections.add(State::degraded, fault::plc_value, e.joint_trouble);
   }
   if ((e.standing & fault::foreign_packets) != 0) {
-    findings.add(State::degraded, fault::foreign_packets,
-                 "two sensors send to one LiDAR's port and nobody can say which is meant; set `source`");
+    objections.add(State::degraded, fault::foreign_packets,
+                   "two sensors send to one LiDAR's port and nobody can say which is meant; set `source`");
   }
   if (a_lidar_is_silent) {  // the others still follow the hull, but nobody may steer by that
-    findings.add(State::degraded, fault::lidar_silent, "a LiDAR is silent");
+    objections.add(State::degraded, fault::lidar_silent, "a LiDAR is silent");
   }
-  if (findings.state == State::tracking && memory.state != State::tracking &&
+  if (objections.state == State::tracking && memory.state != State::tracking &&
       memory.good_frames < limits.health.recover_frames) {
-    findings.add(State::degraded, 0,
-                 format_text("recovering: %s of %d",
-                             counted(static_cast<std::uint64_t>(memory.good_frames), "good frame").c_str(),
-                             limits.health.recover_frames));
+    objections.add(State::degraded, 0,
+                   format_text("recovering: %s of %d",
+                               counted(static_cast<std::uint64_t>(memory.good_frames), "good frame").c_str(),
+                               limits.health.recover_frames));
   }
   if (!memory.track.unique) {
-    findings.state = State::acquiring;
+    objections.state = State::acquiring;
   }
-  memory.state = findings.state;
-  return {findings.state, findings.faults, std::move(findings.reason)};
+  memory.state = objections.state;
+  return {objections.state, objections.faults, std::move(objections.reason)};
 }
 
 }  // namespace
@@ -304,7 +306,7 @@ HealthLimits health_limits(const TrackerConfig& config, double half_length) {
 }
 
 std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, HealthMemory memory,
-                                                    const Evidence& e) {
+                                                    const FrameFindings& e) {
   if (e.reacquire) {
     memory = HealthMemory{};
     memory.state = State::acquiring;

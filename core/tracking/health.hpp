@@ -1,6 +1,6 @@
 // The state machine of a frame: may anybody believe this frame's pose? judge_health() is a pure function.
 //
-// Input: the limits, the memory of earlier frames, the evidence of this frame (its pose and what checks
+// Input: the limits, the memory of earlier frames, the findings of this frame (its pose and what checks
 // found). Output: the memory for the next frame, and the verdict: a state, fault bits and the reason in
 // words. Every frame begins as tracking; each check can only make that worse. Only tracking is health 1.
 //   held       the PLC does not want tracking
@@ -26,7 +26,7 @@
 
 #include "core/base/status.hpp"
 #include "core/integrity/integrity.hpp"
-#include "core/localisation/search_evidence.hpp"
+#include "core/localisation/search_progress.hpp"
 #include "core/localisation/track.hpp"
 #include "core/sight/metrics.hpp"
 #include "core/tracking/tracker_config.hpp"
@@ -35,7 +35,7 @@
 namespace hulltrack {
 
 /// Everything that one frame says for or against itself.
-struct Evidence {
+struct FrameFindings {
   MeasurementTime time{};  // middle of the scan
   bool hold = false;
   bool reacquire = false;        // rising edge
@@ -52,7 +52,7 @@ struct Evidence {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // of T_W_H
   IntegrityFinding integrity;
   MachineFinding machine;
-  SearchEvidence search;
+  SearchProgress search;
 };
 
 /// A hull that runs farther than this while faster than hull.max_speed has run away. The fastest jerk that a
@@ -92,6 +92,6 @@ struct HealthLimits {
 
 [[nodiscard]] std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits,
                                                                   HealthMemory memory,
-                                                                  const Evidence& evidence);
+                                                                  const FrameFindings& findings);
 
 }  // namespace hulltrack

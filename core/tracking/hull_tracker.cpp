@@ -77,7 +77,7 @@ struct HullTracker::Impl {
 
   TrackResult process(const Scan& scan, const JointHistory& joints, const FrameInputs& inputs);
   [[nodiscard]] HullDrift drift() const;
-  [[nodiscard]] PlaneIcpResult register_scan(Evidence& evidence, TrackResult& result);
+  [[nodiscard]] PlaneIcpResult register_scan(FrameFindings& findings, TrackResult& result);
   [[nodiscard]] PlaneStep certainty_of(const PlaneIcpResult& found, const JointHistory& joints,
                                        TrackResult& result) const;
   void look(const Joints& joints_mid);
@@ -86,9 +86,9 @@ struct HullTracker::Impl {
   DistanceMetrics measure(const Pose& T_W_H);
   IntegrityReport inspect(const Pose& T_W_H);
   /// Returns how many surfels the scan confirms at the pose.
-  std::uint32_t examine(const PlaneIcpResult& found, const JointHistory& joints, Evidence& evidence,
+  std::uint32_t examine(const PlaneIcpResult& found, const JointHistory& joints, FrameFindings& findings,
                         TrackResult& result);
-  void search(Evidence& evidence, const TrackResult& result, std::uint32_t confirmed);
+  void search(FrameFindings& findings, const TrackResult& result, std::uint32_t confirmed);
 };
 
 TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joints,
@@ -97,12 +97,12 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   result.frame = scan.frame_number;
   result.time = scan.mid_time();
 
-  Evidence evidence;
-  evidence.time = result.time;
-  evidence.hold = inputs.hold;
-  evidence.reacquire = inputs.reacquire;
-  evidence.standing = inputs.standing;
-  evidence.joint_trouble = inputs.joint_trouble;
+  FrameFindings findings;
+  findings.time = result.time;
+  findings.hold = inputs.hold;
+  findings.reacquire = inputs.reacquire;
+  findings.standing = inputs.standing;
+  findings.joint_trouble = inputs.joint_trouble;
   if (inputs.reacquire) {
     integrity.forget();
     machine_witness.forget();
@@ -110,30 +110,30 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   }
   // The pose is that of the middle of the scan, so the joints must answer there too.
   const JointHistory::Answer mid = joints.at(result.time);
-  evidence.bracketed = mid.lookup == JointHistory::Lookup::ok &&
+  findings.bracketed = mid.lookup == JointHistory::Lookup::ok &&
                        (scan.segments.empty() ||
                         joints.covers(scan.first_firing, scan.last_firing) == JointHistory::Lookup::ok);
-  evidence.joints_on_trial =
-      evidence.bracketed && joints.on_trial(scan.segments.empty() ? result.time : scan.first_firing,
+  findings.joints_on_trial =
+      findings.bracketed && joints.on_trial(scan.segments.empty() ? result.time : scan.first_firing,
                                             scan.segments.empty() ? result.time : scan.last_firing);
-  if (evidence.bracketed && !inputs.hold && (inputs.standing & fault::plc_stale) == 0) {
+  if (findings.bracketed && !inputs.hold && (inputs.standing & fault::plc_stale) == 0) {
     scan_filter.run(scan, joints, drift(), filtered);
-    const PlaneIcpResult found = register_scan(evidence, result);
+    const PlaneIcpResult found = register_scan(findings, result);
     look(mid.joints);
     const MachineStand standing = stand(joints, result.time);
-    evidence.machine = machine_witness.look(result.time, filtered, views, standing, evidence.joints_on_trial);
-    result.joints_confirmed = evidence.machine.confirmed;
+    findings.machine = machine_witness.look(result.time, filtered, views, standing, findings.joints_on_trial);
+    result.joints_confirmed = findings.machine.confirmed;
     result.found_top = machine_witness.found_top();
-    result.joint_doubts = evidence.machine.joints;
-    const std::uint32_t confirmed = result.registered ? examine(found, joints, evidence, result) : 0;
-    search(evidence, result, confirmed);
-    if (result.registered && !evidence.joints_on_trial &&
-        (evidence.integrity.faults & fault::contradicted) == 0) {
+    result.joint_doubts = findings.machine.joints;
+    const std::uint32_t confirmed = result.registered ? examine(found, joints, findings, result) : 0;
+    search(findings, result, confirmed);
+    if (result.registered && !findings.joints_on_trial &&
+        (findings.integrity.faults & fault::contradicted) == 0) {
       finder.learn(result.time, found);
-      follow_joints(standing, result, evidence.machine);
+      follow_joints(standing, result, findings.machine);
     }
   }
-  auto [next, verdict] = judge_health(limits, std::move(memory), evidence);
+  auto [next, verdict] = judge_health(limits, std::move(memory), findings);
   memory = std::move(next);
   finder.judged(memory.track, inputs.reacquire);
   result.state = verdict.state;
@@ -144,7 +144,7 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   return result;
 }
 
-PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult& result) {
+PlaneIcpResult HullTracker::Impl::register_scan(FrameFindings& findings, TrackResult& result) {
   PlaneIcpResult answer = finder.find(filtered.hull_W, result.time, memory.track);
   const IcpResult& icp_result = answer.icp;
   const bool found = icp_result.stop == IcpStop::converged || icp_result.stop == IcpStop::iteration_limit;
@@ -152,10 +152,10 @@ PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult&
   result.converged = icp_result.converged;
   result.iterations = icp_result.iterations;
   result.matched = icp_result.matched;
-  evidence.registered = found;
-  evidence.converged = icp_result.converged;
-  evidence.matched = icp_result.matched;
-  evidence.trouble =
+  findings.registered = found;
+  findings.converged = icp_result.converged;
+  findings.matched = icp_result.matched;
+  findings.trouble =
       format_text("registration of %zu points: %s", finder.thinned_W().size(), describe(icp_result.stop));
   if (found) {
     result.T_W_H = icp_result.T_target_source.inverse();
@@ -165,12 +165,12 @@ PlaneIcpResult HullTracker::Impl::register_scan(Evidence& evidence, TrackResult&
 
 /// Speed and rate of turn of the hull about its reference point, by its last poses; zero if unknown.
 HullDrift HullTracker::Impl::drift() const {
-  const auto slope = memory.track.motion.motion();
-  if (!slope || !memory.track.followed) {
+  const auto speed = memory.track.speed_record.speed();
+  if (!speed || !memory.track.followed) {
     return {};
   }
-  return {config.hull.reference_point + memory.track.followed->displacement, slope->velocity,
-          slope->rpy_rate};
+  return {config.hull.reference_point + memory.track.followed->displacement, speed->velocity,
+          speed->rpy_rate};
 }
 
 /// The step of a point-to-plane fit: zero, since nothing is left to correct, with the covariance of the fit
@@ -192,7 +192,7 @@ PlaneStep HullTracker::Impl::certainty_of(const PlaneIcpResult& found, const Joi
 }
 
 std::uint32_t HullTracker::Impl::examine(const PlaneIcpResult& found, const JointHistory& joints,
-                                         Evidence& evidence, TrackResult& result) {
+                                         FrameFindings& findings, TrackResult& result) {
   const Eigen::Vector3d& reference_H = config.hull.reference_point;
   result.displacement = result.T_W_H * reference_H - reference_H;
   result.rpy = rpy_from_rotation(result.T_W_H.linear());
@@ -220,10 +220,10 @@ std::uint32_t HullTracker::Impl::examine(const PlaneIcpResult& found, const Join
   }
   result.bend = finder.bend().d;
   result.sigma_bend = finder.bend().sigma;
-  evidence.metrics = result.metrics;
-  evidence.displacement = result.displacement;
-  evidence.rotation = result.T_W_H.linear();
-  evidence.integrity = judge_integrity(report);
+  findings.metrics = result.metrics;
+  findings.displacement = result.displacement;
+  findings.rotation = result.T_W_H.linear();
+  findings.integrity = judge_integrity(report);
   return report.confirmed;
 }
 
@@ -235,10 +235,10 @@ IntegrityReport HullTracker::Impl::inspect(const Pose& T_W_H) {
 
 /// Does another place explain the scan as well? The frame's pose is reported to the search as right or
 /// contradicted. Then at most one other place is aligned, checked in the same way and reported.
-void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result, std::uint32_t confirmed) {
+void HullTracker::Impl::search(FrameFindings& findings, const TrackResult& result, std::uint32_t confirmed) {
   const Pose T_H_W = result.T_W_H.inverse();
   if (result.registered) {
-    const bool wrong = (evidence.integrity.faults & fault::contradicted) != 0;
+    const bool wrong = (findings.integrity.faults & fault::contradicted) != 0;
     finder.settle(T_H_W, T_H_W, wrong);
     if (const auto rival = wrong ? std::nullopt : finder.rival(T_H_W)) {
       const Pose T_W_H = rival->T_H_W.inverse();
@@ -247,7 +247,7 @@ void HullTracker::Impl::search(Evidence& evidence, const TrackResult& result, st
       finder.settle(rival->start, rival->T_H_W, !is_alternative(report, confirmed));
     }
   }
-  evidence.search = finder.evidence(T_H_W);
+  findings.search = finder.findings(T_H_W);
 }
 
 void HullTracker::Impl::look(const Joints& joints_mid) {

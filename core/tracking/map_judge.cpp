@@ -204,15 +204,15 @@ void judge_surfaces(const HullMap& map, Findings& findings) {
             "of the hull with 5 cm voxels",
             fixed, surfels.size(), kFewestSurfaces, spacing_of(map), kSurfaceSpacing));
   } else if (const int free = free_directions(planes);
-             free > 0 || map.planes().patches() < PlaneCovarianceEstimator::kFewestPatches) {
+             free > 0 || map.planes().clusters() < PlaneCovarianceEstimator::kFewestClusters) {
     warn(findings, "hull.map",
          format_text(
              "its surfaces leave %d of the six directions of a pose free (%zu flat pieces face along X, %zu "
              "along Y, %zu along Z, %zu aslant, in %u places, where %zu are needed): health will not come; "
              "map "
              "more of the hull, hatches above all",
-             free, facing[0], facing[1], facing[2], facing[3], map.planes().patches(),
-             PlaneCovarianceEstimator::kFewestPatches));
+             free, facing[0], facing[1], facing[2], facing[3], map.planes().clusters(),
+             PlaneCovarianceEstimator::kFewestClusters));
   }
 }
 

@@ -86,35 +86,35 @@ void JointMotionWitness::finish(const Move& move, const Moment& end) {
   }
 }
 
-JointMotionWitness::Evidence JointMotionWitness::evidence(JointName joint) const {
+JointMotionWitness::Statistics JointMotionWitness::statistics(JointName joint) const {
   const std::deque<Trial>& trials = trials_.at(static_cast<std::size_t>(joint));
-  Evidence evidence;
-  evidence.moves = trials.size();
-  double worth = 0.0;
+  Statistics statistics;
+  statistics.moves = trials.size();
+  double weight = 0.0;
   double sum = 0.0;
   std::size_t forward = 0;
   for (const Trial& trial : trials) {
-    worth += trial.worth;
-    sum += trial.worth * trial.s;
+    weight += trial.weight;
+    sum += trial.weight * trial.s;
     forward += trial.forward ? 1 : 0;
   }
   if (trials.size() < kFewestMoves) {
-    return evidence;
+    return statistics;
   }
-  evidence.both_ways = forward > 0 && forward < trials.size();
-  evidence.s = sum / worth;
+  statistics.both_ways = forward > 0 && forward < trials.size();
+  statistics.s = sum / weight;
   double scatter = kPriorMoves;  // sum of squares in units of the ship's usual motion: about 1 a move
   for (const Trial& trial : trials) {
-    scatter += trial.worth * (trial.s - evidence.s) * (trial.s - evidence.s);
+    scatter += trial.weight * (trial.s - statistics.s) * (trial.s - statistics.s);
   }
   const double freedom = kPriorMoves + static_cast<double>(trials.size()) - 1.0;
-  evidence.t = evidence.s / std::sqrt(scatter / freedom / worth);
-  return evidence;
+  statistics.t = statistics.s / std::sqrt(scatter / freedom / weight);
+  return statistics;
 }
 
 std::string JointMotionWitness::contradiction() const {
   for (const JointName joint : kAllJoints) {
-    const Evidence seen = evidence(joint);
+    const Statistics seen = statistics(joint);
     if (seen.both_ways && std::abs(seen.s) > kLeast && std::abs(seen.t) > kBeyondChance) {
       return format_text(
           "the hull seems to move by %.2f times the %s in each of its last %zu moves: %s of %s?", seen.s,

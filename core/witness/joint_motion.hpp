@@ -38,13 +38,13 @@ class JointMotionWitness {
            const Eigen::Matrix3d& R_W_H);
 
   /// What the moves so far show of a joint; s and t are 0 with fewer than kFewestMoves.
-  struct Evidence {
+  struct Statistics {
     std::size_t moves = 0;
     double s = 0.0;          // mean over the moves, no unit
     double t = 0.0;          // Student's t: s divided by its standard error
     bool both_ways = false;  // there are moves of both signs
   };
-  [[nodiscard]] Evidence evidence(JointName joint) const;
+  [[nodiscard]] Statistics statistics(JointName joint) const;
 
   /// Why the machine is contradicted, in words with figures; empty if it is not.
   [[nodiscard]] std::string contradiction() const;
@@ -68,8 +68,8 @@ class JointMotionWitness {
   };
   struct Trial {
     double s;
-    double worth;  // 1 / variance of s, if the ship moves as usual
-    bool forward;  // the joint's value grew
+    double weight;  // 1 / variance of s, if the ship moves as usual
+    bool forward;   // the joint's value grew
   };
   void finish(const Move& move, const Moment& end);
 

@@ -42,15 +42,15 @@ struct Weighing {
   /// How much of `h` is in y, how much of it wear and noise can fake, and the gain.
   [[nodiscard]] JointDoubt doubt_along(const Eigen::VectorXd& h) const {
     const Eigen::VectorXd weights = S_inverse * h;
-    const double worth = h.dot(weights);
-    if (!(worth > 0.0)) {
+    const double information = h.dot(weights);
+    if (!(information > 0.0)) {
       return {};
     }
     const Eigen::VectorXd wear = (G.transpose() * weights).cwiseAbs();
     const double most_of_wear = std::min(wear.sum(), kSpread * wear.norm());
     const double most_of_noise = kNoiseSigmas * weights.cwiseProduct(noise).norm();
     const double z = weights.dot(y);
-    return {z / worth, (most_of_wear + most_of_noise) / worth, z * z / worth};
+    return {z / information, (most_of_wear + most_of_noise) / information, z * z / information};
   }
 };
 

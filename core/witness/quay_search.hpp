@@ -10,7 +10,7 @@
 //   gains has to be spread farther than any movable thing's face is long or tall: a lorry is in no map, and
 //   may come to lie on something of the map by chance.
 // - The better guess is kept as long as it stays better. The answer is the misplacement that the planes near
-//   the moved returns show: evidence of another kind than the counts.
+//   the moved returns show: another kind of information than the counts.
 // - If each wrong guess at a joint loses many returns, a true error of that size would let the right guess
 //   gain as many. So the same counts say whether a large error of the joint would be found (would_find()).
 //

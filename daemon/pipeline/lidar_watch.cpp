@@ -48,20 +48,20 @@ LidarWatch::LidarWatch(const LidarConfig& config, double expected_rpm, LogSink& 
       another_log_(log, LogLevel::error),
       filtered_log_(log) {}
 
-Faults LidarWatch::update(const LidarEvidence& evidence, SteadyTime now) {
-  update_silence(evidence, now);
-  update_refused(evidence, now);
-  update_quality(evidence, now);
+Faults LidarWatch::update(const LidarCounters& counters, SteadyTime now) {
+  update_silence(counters, now);
+  update_refused(counters, now);
+  update_quality(counters, now);
   Faults standing = 0;
   standing |= silent_ ? fault::lidar_silent : Faults{0};
-  standing |= evidence.status.clock_fault ? fault::clock : Faults{0};
-  standing |= evidence.status.disputed ? fault::foreign_packets : Faults{0};
+  standing |= counters.status.clock_fault ? fault::clock : Faults{0};
+  standing |= counters.status.disputed ? fault::foreign_packets : Faults{0};
   return standing;
 }
 
-void LidarWatch::update_silence(const LidarEvidence& evidence, SteadyTime now) {
+void LidarWatch::update_silence(const LidarCounters& counters, SteadyTime now) {
   const SteadyTime heard =
-      evidence.status.packets > 0 ? live_steady_time(evidence.status.last_received) : start_;
+      counters.status.packets > 0 ? live_steady_time(counters.status.last_received) : start_;
   silent_ = now - heard > config_.timeout;
   silence_log_.update(
       silent_, now,
@@ -83,46 +83,46 @@ void LidarWatch::tell(ConditionLog& log, bool active, SteadyTime now, Entry&& en
       active, now, [&] { return name_ + ": " + entry(); }, [&](Nanoseconds) { return name_ + ": " + end; });
 }
 
-void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
+void LidarWatch::update_refused(const LidarCounters& counters, SteadyTime now) {
   tell(
-      foreign_log_, foreign_grows_.update(evidence.foreign, now), now,
+      foreign_log_, foreign_grows_.update(counters.foreign, now), now,
       [&] {
         return format_text(
             "dropped datagrams from %s, which is not the configured source %s; %llu so far. Poses are not "
             "affected; find out who sends to UDP port %u",
-            evidence.last_foreign.c_str(), config_.source.c_str(),
-            static_cast<unsigned long long>(evidence.foreign), config_.port);
+            counters.last_foreign.c_str(), config_.source.c_str(),
+            static_cast<unsigned long long>(counters.foreign), config_.port);
       },
       "no more datagrams from foreign senders");
   tell(
-      another_log_, another_grows_.update(evidence.status.packets_of_another, now), now,
+      another_log_, another_grows_.update(counters.status.packets_of_another, now), now,
       [&] {
-        return evidence.two_senders + "; set `source` to the one that is meant. " +
-               (evidence.status.disputed ? "Nobody can say which that is, so health is 0 until one is alone"
+        return counters.two_senders + "; set `source` to the one that is meant. " +
+               (counters.status.disputed ? "Nobody can say which that is, so health is 0 until one is alone"
                                          : "The first goes on alone, the other's datagrams are dropped");
       },
       "one sensor alone sends to its port again");
   tell(
-      filtered_log_, filtered_grows_.update(evidence.filtered, now), now,
+      filtered_log_, filtered_grows_.update(counters.filtered, now), now,
       [&] {
         return format_text(
             "a packet filter of this computer has kept %s from UDP port %u, IPAddressDeny= of the unit for "
             "one: somebody who is not named in IPAddressAllow= sends there. Poses are not affected",
-            counted(evidence.filtered, "datagram").c_str(), config_.port);
+            counted(counters.filtered, "datagram").c_str(), config_.port);
       },
       "no packet filter is at work any more");
   tell(
-      rejected_log_, rejected_grows_.update(evidence.status.packets_rejected, now), now,
+      rejected_log_, rejected_grows_.update(counters.status.packets_rejected, now), now,
       [&] {
         return format_text(
             "dropped datagrams that are not those of a %s: %s; %llu so far. Compare `model` and `port` in "
             "the configuration with the sensor",
-            config_.model.c_str(), evidence.last_rejection.c_str(),
-            static_cast<unsigned long long>(evidence.status.packets_rejected));
+            config_.model.c_str(), counters.last_rejection.c_str(),
+            static_cast<unsigned long long>(counters.status.packets_rejected));
       },
       "no more malformed datagrams");
-  const bool held_back = held_back_grows_.update(evidence.status.packets_held_back, now);
-  const bool contradicted = evidence.status.angles_contradicted;
+  const bool held_back = held_back_grows_.update(counters.status.packets_held_back, now);
+  const bool contradicted = counters.status.angles_contradicted;
   tell(
       held_back_log_, held_back && (contradicted || now - start_ > kLongestUntold), now,
       [&] {
@@ -142,18 +142,18 @@ void LidarWatch::update_refused(const LidarEvidence& evidence, SteadyTime now) {
       },
       "it has told its lasers' angles");
   tell(
-      overflow_log_, overflow_grows_.update(evidence.kernel_overflows, now), now,
+      overflow_log_, overflow_grows_.update(counters.kernel_overflows, now), now,
       [&] {
         return format_text(
             "the kernel's receive buffer overflowed, %s lost so far. Is this computer overloaded? See "
             "net.core.rmem_max in hulltrackd(8)",
-            counted(evidence.kernel_overflows, "packet").c_str());
+            counted(counters.kernel_overflows, "packet").c_str());
       },
       "the receive buffer does not overflow any more");
 }
 
-void LidarWatch::update_quality(const LidarEvidence& evidence, SteadyTime now) {
-  const LidarStatus& status = evidence.status;
+void LidarWatch::update_quality(const LidarCounters& counters, SteadyTime now) {
+  const LidarStatus& status = counters.status;
   tell(
       loss_log_, !silent_ && status.loss > kWorthyLoss, now,
       [&] {

@@ -16,7 +16,7 @@
 namespace hulltrack {
 
 /// What the drivers know of one LiDAR now. Counters run from the start.
-struct LidarEvidence {
+struct LidarCounters {
   LidarStatus status;
   std::string last_rejection;          // as ScanBuilder::last_rejection()
   std::string two_senders;             // as ScanBuilder::two_senders()
@@ -33,7 +33,7 @@ class LidarWatch {
 
   /// Standing faults: lidar_silent, clock, foreign_packets while nobody can say which of two sensors is
   /// meant. Call it some times a second.
-  Faults update(const LidarEvidence& evidence, SteadyTime now);
+  Faults update(const LidarCounters& counters, SteadyTime now);
 
   [[nodiscard]] bool silent() const { return silent_; }
 
@@ -42,9 +42,9 @@ class LidarWatch {
   template <std::invocable Entry>
   void tell(ConditionLog& log, bool active, SteadyTime now, Entry&& entry, const char* end);
 
-  void update_silence(const LidarEvidence& evidence, SteadyTime now);
-  void update_refused(const LidarEvidence& evidence, SteadyTime now);
-  void update_quality(const LidarEvidence& evidence, SteadyTime now);
+  void update_silence(const LidarCounters& counters, SteadyTime now);
+  void update_refused(const LidarCounters& counters, SteadyTime now);
+  void update_quality(const LidarCounters& counters, SteadyTime now);
 
   LidarConfig config_;
   std::string name_;  // "LiDAR boom"

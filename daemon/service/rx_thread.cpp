@@ -135,7 +135,7 @@ void RxThread::hand_over_scans() {
 void RxThread::look_at_lidars(SteadyTime now) {
   LidarView view{.standing = 0, .every_silent = true, .updated = now};
   for (std::size_t lidar = 0; lidar < lidars_.size(); ++lidar) {
-    view.standing |= watches_[lidar].update(evidence(lidar), now);
+    view.standing |= watches_[lidar].update(counters(lidar), now);
     view.every_silent = view.every_silent && watches_[lidar].silent();
   }
   exchange_.lidars.put(view);
@@ -150,7 +150,7 @@ void RxThread::look_at_lidars(SteadyTime now) {
       [](Nanoseconds) { return std::string("every scan is processed again"); });
 }
 
-LidarEvidence RxThread::evidence(std::size_t lidar) const {
+LidarCounters RxThread::counters(std::size_t lidar) const {
   const UdpSource& socket = sockets_.sources[sockets_.data_of[lidar]];
   return {.status = builder_.status(lidar),
           .last_rejection = builder_.last_rejection(lidar),

@@ -43,7 +43,7 @@ class RxThread {
   void hand_over_scans();
   void look_at_lidars(SteadyTime now);
   void add_figures();
-  [[nodiscard]] LidarEvidence evidence(std::size_t lidar) const;
+  [[nodiscard]] LidarCounters counters(std::size_t lidar) const;
 
   Exchange& exchange_;
   Pulse& pulse_;

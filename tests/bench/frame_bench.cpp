@@ -29,7 +29,7 @@ namespace hulltrack::bench {
 namespace {
 
 constexpr int kFrames = 60;
-constexpr std::uint32_t kFramesToBelieve = 30;  // of them: the search of the berth, patches, recovery
+constexpr std::uint32_t kFramesToBelieve = 30;  // of them: the search of the berth, landmarks, recovery
 constexpr int kRounds = 5;
 constexpr std::uint32_t kSeed = 1;
 constexpr double kMapSpacing = 0.05;  // m

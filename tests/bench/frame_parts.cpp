@@ -22,7 +22,7 @@ void follow(const Pose& T_W_H, MeasurementTime time, Track& track) {
   const Eigen::Vector3d displacement = T_W_H * reference_H - reference_H;
   track.unique = true;
   track.followed = {time, displacement, T_W_H.linear()};
-  track.motion.add(time, displacement, rpy_from_rotation(T_W_H.linear()));
+  track.speed_record.add(time, displacement, rpy_from_rotation(T_W_H.linear()));
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     report.step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
     integrity.weigh(map, scan.mid_time(), T_W_H, T_W_H * reference_H, finder.bend_shape(), finder.bend().d,
                     report);
-    done("patches");
+    done("landmarks");
     if (const auto rival = finder.rival(found.icp.T_target_source)) {
       finder.settle(rival->start, rival->T_H_W, true);  // the scan contradicts every other place
     }
@@ -127,9 +127,9 @@ void time_map_parts(const Cloud& cloud_H, Parts& parts) {
   done("sides");
   std::vector<RimPoint> rims = find_rims(cloud_H, tree, relief);
   done("rims");
-  const std::vector<MapPatch> patches = number_patches(subset_H, tree, relief, surfels, rims);
-  done("patches");
-  require(!patches.empty() && !planes.planes().empty(), "a map without surfaces");
+  const std::vector<Landmark> landmarks = find_landmarks(subset_H, tree, relief, surfels, rims);
+  done("landmarks");
+  require(!landmarks.empty() && !planes.planes().empty(), "a map without surfaces");
 }
 
 }  // namespace hulltrack::bench

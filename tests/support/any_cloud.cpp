@@ -116,7 +116,7 @@ class Maker {
         add_open_box(corner, {length, width, bytes_.size(12.0F)}, step);
         break;
       }
-      case 3: {  // a pit in a pit
+      case 3: {  // a hold in a hold
         const Point corner = bytes_.place();
         const float side = 0.5F + bytes_.size(6.0F);
         add_open_box(corner, {side, side, 5.0F}, step);
@@ -176,9 +176,10 @@ void look_through(const HullMap& map) {
     cells.push_back(map.occupancy().cell_of(map.subset_H()[i]));
   }
   for (int x = -2; x <= 2; ++x) {
-    std::array<std::uint16_t, OccupancyGrid::kHeights> worth{};
-    map.occupancy().correlate(cells, x, -x, worth);
-    require(x != 0 || worth[OccupancyGrid::kUp] == 2 * cells.size(), "the map does not occupy its own cells");
+    std::array<std::uint16_t, OccupancyGrid::kHeights> values{};
+    map.occupancy().correlate(cells, x, -x, values);
+    require(x != 0 || values[OccupancyGrid::kUp] == 2 * cells.size(),
+            "the map does not occupy its own cells");
   }
   std::size_t seen = 0;
   map.occluders_H().sight_within(
@@ -187,7 +188,8 @@ void look_through(const HullMap& map) {
   require(seen <= map.occluders_H().points().size(), "more is seen than is there");
   for (const Surfel& surfel : map.surfels()) {
     require(surfel.normal_H.allFinite() && surfel.centre_H.allFinite(), "a surfel that is none");
-    require(surfel.patch == Surfel::kNoPatch || surfel.patch < map.patches().size(), "a patch that is none");
+    require(surfel.landmark == Surfel::kNoLandmark || surfel.landmark < map.landmarks().size(),
+            "a landmark that is none");
   }
   for (const RimPoint& rim : map.rims()) {
     require(rim.p_H.allFinite() && rim.across_H.allFinite(), "a rim that is none");

@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::uint32_t kSeed = 1;
 constexpr std::uint32_t kFrames = 40;
-constexpr std::uint32_t kFramesToBelieve = 30;  // the search of the berth, patches, recovery
+constexpr std::uint32_t kFramesToBelieve = 30;  // the search of the berth, landmarks, recovery
 
 void expect_map_of_a_ship(const HullMap& map) {
   EXPECT_NEAR(static_cast<double>(map.cloud_H().size()), 1.8e6, 0.1e6);
   EXPECT_GT(map.planes().planes().size(), 100'000U);
   EXPECT_GT(map.rims().size(), 1000U) << "hatches have coamings";
-  EXPECT_GT(map.patches().size(), 200U);
+  EXPECT_GT(map.landmarks().size(), 200U);
   const auto movable = std::count_if(map.surfels().begin(), map.surfels().end(),
                                      [](const Surfel& surfel) { return surfel.movable; });
   EXPECT_GT(movable, 1000) << "there are holds for cargo and covers";

@@ -26,10 +26,10 @@ IntegrityReport right_pose() {
   report.step.solved = true;
   report.step.covariance_translation = variance(0.01);
   report.step.covariance_rotation = variance(radians(0.02));
-  report.patches.in_view = 40;
-  report.patches.judged = 38;
-  report.patches.solid = 38;
-  report.patches.decided = true;
+  report.landmarks.in_view = 40;
+  report.landmarks.judged = 38;
+  report.landmarks.solid = 38;
+  report.landmarks.decided = true;
   return report;
 }
 
@@ -200,11 +200,11 @@ TEST(JudgeAlternative, APlaceThatTheScanContradictsIsNoneHoweverMuchItConfirms) 
 
 TEST(JudgeAlternative, APlaceThatIsNotKnownToBeTheMapsShipMayBeOne) {
   IntegrityReport there = right_pose();
-  there.patches.decided = false;
+  there.landmarks.decided = false;
   EXPECT_TRUE(is_alternative(there, there.confirmed));
 }
 
-TEST(JudgeShip, FourDisplacedPatchesTwoPiecesOfRimOrOneWallSetBackAreAnotherShip) {
+TEST(JudgeShip, FourDisplacedLandmarksTwoPiecesOfRimOrOneWallSetBackAreAnotherShip) {
   for (const auto& [displaced, rims, set_back, other] : {std::tuple{0U, 0U, 0U, false},
                                                          {3U, 0U, 0U, false},
                                                          {1U, 1U, 0U, false},
@@ -212,23 +212,23 @@ TEST(JudgeShip, FourDisplacedPatchesTwoPiecesOfRimOrOneWallSetBackAreAnotherShip
                                                          {2U, 2U, 0U, true},
                                                          {1U, 0U, 1U, true}}) {
     IntegrityReport report = right_pose();
-    report.patches.displaced = displaced;
-    report.patches.displaced_rims = rims;
-    report.patches.set_back = set_back;
-    report.patches.median_offset = 0.12;
+    report.landmarks.displaced = displaced;
+    report.landmarks.displaced_rims = rims;
+    report.landmarks.set_back = set_back;
+    report.landmarks.median_offset = 0.12;
     const IntegrityFinding finding = judge_integrity(report);
     EXPECT_EQ(finding.faults, other ? kContradicted : kNone) << displaced << " and " << rims;
     EXPECT_EQ(finding.reason.find("another ship") != std::string::npos, other) << finding.reason;
   }
 }
 
-TEST(JudgeShip, OfAHundredPatchesTwoPiecesOfRimAreNoOtherShip) {
+TEST(JudgeShip, OfAHundredLandmarksTwoPiecesOfRimAreNoOtherShip) {
   IntegrityReport report = right_pose();
-  report.patches.displaced = 2;
-  report.patches.displaced_rims = 2;
-  report.patches.solid = 110;
+  report.landmarks.displaced = 2;
+  report.landmarks.displaced_rims = 2;
+  report.landmarks.solid = 110;
   EXPECT_EQ(judge_integrity(report).faults, kNone);
-  report.patches.displaced = 3;
+  report.landmarks.displaced = 3;
   EXPECT_EQ(judge_integrity(report).faults, kContradicted);
 }
 
@@ -241,7 +241,7 @@ TEST(JudgeShip, WhereAsManyStructuresDisagreeAsAgreeNobodyKnows) {
                                                    {1U, 2U, true}}) {
     for (const bool along : {true, false}) {
       IntegrityReport report = right_pose();
-      (along ? report.patches.along : report.patches.across) = {in_place, displaced};
+      (along ? report.landmarks.along : report.landmarks.across) = {in_place, displaced};
       const IntegrityFinding finding = judge_integrity(report);
       EXPECT_EQ(finding.faults, other ? kContradicted : kNone) << in_place << " and " << displaced;
       EXPECT_EQ(finding.reason.find(along ? "along the ship" : "across the ship") != std::string::npos, other)
@@ -252,7 +252,7 @@ TEST(JudgeShip, WhereAsManyStructuresDisagreeAsAgreeNobodyKnows) {
 
 TEST(JudgeShip, AShipThatIsNotDecidedOnIsNoFaultButSaidSo) {
   IntegrityReport report = right_pose();
-  report.patches.decided = false;
+  report.landmarks.decided = false;
   const IntegrityFinding finding = judge_integrity(report);
   EXPECT_TRUE(finding.undecided);
   EXPECT_EQ(finding.faults, kNone);

@@ -161,7 +161,7 @@ TEST_F(IntegrityOverADeck, WhatTheShipItselfHidesSaysNothingHoweverLittleBelowIt
   EXPECT_EQ(report.expected, report.confirmed);
 }
 
-TEST_F(IntegrityRun, PatchesStandWhereTheBendPutsThem) {
+TEST_F(IntegrityRun, LandmarksStandWhereTheBendPutsThem) {
   // The reference point is 1 km away, so that a metre of bend lifts all of the corner by a metre.
   const BendShape shape{1000.0, 2000.0};
   const auto displaced = [&](double bend) {
@@ -174,8 +174,8 @@ TEST_F(IntegrityRun, PatchesStandWhereTheBendPutsThem) {
       report.step = {.solved = true};
       integrity.weigh(map, MeasurementTime{}, Pose::Identity(), reference, shape, bend, report);
     }
-    EXPECT_GT(report.patches.in_view, 2U);
-    return report.patches.displaced;
+    EXPECT_GT(report.landmarks.in_view, 2U);
+    return report.landmarks.displaced;
   };
   EXPECT_EQ(displaced(0.1), 0U);
   EXPECT_GT(displaced(0.0), 0U);
@@ -196,7 +196,7 @@ TEST_F(IntegrityRun, WhatWasSeenAtAPlaceFromWhichNoShipComesIsForgotten) {
                       report);
       seconds = 0.1;
     }
-    return report.patches.displaced;
+    return report.landmarks.displaced;
   };
   constexpr float kLower = 1.02F;  // of 6 m: 0.12 m
   const std::uint32_t there = displaced(0.0, 0.1, kLower);

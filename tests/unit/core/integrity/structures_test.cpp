@@ -10,23 +10,24 @@ namespace {
 constexpr auto kAlong = SurfaceClass::transverse;
 constexpr auto kAcross = SurfaceClass::longitudinal;
 
-MapPatch patch(float place, std::uint32_t pit = Relief::kNoPit, SurfaceClass faces = kAlong) {
-  return {.faces = faces, .place = place, .pit = pit};
+Landmark landmark(float place, std::uint32_t hold = Relief::kNoHold, SurfaceClass faces = kAlong) {
+  return {.faces = faces, .place = place, .hold = hold};
 }
 
 TEST(Structures, AllThatBelongsToAHatchIsOne) {
-  const std::vector<MapPatch> mapped{patch(-9.0F, 0), patch(9.0F, 0), patch(13.0F, 1), patch(-8.7F, 0)};
+  const std::vector<Landmark> mapped{landmark(-9.0F, 0), landmark(9.0F, 0), landmark(13.0F, 1),
+                                     landmark(-8.7F, 0)};
   EXPECT_EQ(Structures(mapped).mapped(kAlong), 2U);
 }
 
 TEST(Structures, WhatIsOfNoHatchIsOneAsFarAsItGoesOn) {
-  const std::vector<MapPatch> mapped{patch(-48.0F), patch(43.0F), patch(-45.5F), patch(-47.1F),
-                                     patch(-46.3F)};
+  const std::vector<Landmark> mapped{landmark(-48.0F), landmark(43.0F), landmark(-45.5F), landmark(-47.1F),
+                                     landmark(-46.3F)};
   EXPECT_EQ(Structures(mapped).mapped(kAlong), 2U) << "a house with steps, a forecastle";
 }
 
 TEST(Structures, AHousesStepsAreOneThoughThoseBetweenAreNotInView) {
-  const std::vector<MapPatch> mapped{patch(-48.0F), patch(-46.5F), patch(-45.0F)};
+  const std::vector<Landmark> mapped{landmark(-48.0F), landmark(-46.5F), landmark(-45.0F)};
   Structures structures(mapped);
   structures.vote(0, false);
   structures.vote(2, false);
@@ -34,8 +35,8 @@ TEST(Structures, AHousesStepsAreOneThoughThoseBetweenAreNotInView) {
 }
 
 TEST(Structures, EachDirectionHasItsOwn) {
-  const std::vector<MapPatch> mapped{patch(0.0F, 0), patch(5.0F, 0, kAcross), patch(9.0F),
-                                     patch(9.0F, Relief::kNoPit, SurfaceClass::other)};
+  const std::vector<Landmark> mapped{landmark(0.0F, 0), landmark(5.0F, 0, kAcross), landmark(9.0F),
+                                     landmark(9.0F, Relief::kNoHold, SurfaceClass::other)};
   Structures structures(mapped);
   EXPECT_EQ(structures.mapped(kAlong), 2U);
   EXPECT_EQ(structures.mapped(kAcross), 1U);
@@ -47,8 +48,8 @@ TEST(Structures, EachDirectionHasItsOwn) {
   EXPECT_EQ(structures.count(kAcross).displaced, 1U);
 }
 
-TEST(Structures, MostOfItsPatchesDecide) {
-  const std::vector<MapPatch> mapped{patch(1.0F, 0), patch(2.0F, 0), patch(3.0F, 0)};
+TEST(Structures, MostOfItsLandmarksDecide) {
+  const std::vector<Landmark> mapped{landmark(1.0F, 0), landmark(2.0F, 0), landmark(3.0F, 0)};
   Structures structures(mapped);
   structures.vote(0, true);
   structures.vote(1, false);

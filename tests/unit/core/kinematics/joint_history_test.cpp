@@ -47,7 +47,7 @@ TEST(JointHistory, ABracketSpansAtMost250Milliseconds) {
   EXPECT_EQ(history.covers(ms(-1), ms(250)), Lookup::before_oldest);
 }
 
-void expect_rate(const JointHistory::Motion& motion, const Joints& rate, Nanoseconds spacing) {
+void expect_rate(const JointHistory::State& motion, const Joints& rate, Nanoseconds spacing) {
   EXPECT_NEAR(motion.rate.d_x, rate.d_x, 1e-9);
   EXPECT_NEAR(motion.rate.theta_r, rate.theta_r, 1e-9);
   EXPECT_NEAR(motion.rate.theta_p, rate.theta_p, 1e-9);

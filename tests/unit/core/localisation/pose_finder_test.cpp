@@ -52,7 +52,7 @@ class Finding : public ::testing::Test {
     if (const auto rival = finder.rival(T_H_W)) {
       finder.settle(rival->start, rival->T_H_W, !rivals_fit);
     }
-    evidence = finder.evidence(T_H_W);
+    progress = finder.progress(T_H_W);
     finder.judged(track, false);
     time += std::chrono::milliseconds(100);
     return T_H_W.inverse();
@@ -76,17 +76,17 @@ class Finding : public ::testing::Test {
   PoseFinder finder = finder_of();
   Track track;
   MeasurementTime time{};
-  SearchEvidence evidence;
+  SearchProgress progress;
 };
 
 TEST_F(Finding, AHullAnywhereInTheBerthIsFound) {
   const Vector3d displacement{-12.0, 1.0, 2.0};
   const Cloud hull_W = scan_of(lying(displacement));
   (void)step(hull_W, false);
-  EXPECT_LT(evidence.tried, evidence.starts) << "a search takes some frames";
+  EXPECT_LT(progress.tried, progress.starts) << "a search takes some frames";
   EXPECT_LT(error(search(hull_W, false), displacement), 0.03);
-  EXPECT_EQ(evidence.tried, evidence.starts);
-  EXPECT_FALSE(evidence.rival);
+  EXPECT_EQ(progress.tried, progress.starts);
+  EXPECT_FALSE(progress.rival);
 }
 
 TEST_F(Finding, OfTwoHatchesThatAreAlikeTheOtherIsNamedAsARival) {
@@ -95,15 +95,15 @@ TEST_F(Finding, OfTwoHatchesThatAreAlikeTheOtherIsNamedAsARival) {
   const Pose T_W_H = search(hatch_W);
   const bool right = error(T_W_H, displacement) < 1.0;
   EXPECT_LT(error(T_W_H, right ? displacement : displacement + kBetweenHatches), 0.05);
-  EXPECT_EQ(evidence.tried, evidence.starts);
-  ASSERT_TRUE(evidence.rival);
-  EXPECT_LT((*evidence.rival - (right ? displacement + kBetweenHatches : displacement)).norm(), 0.05);
+  EXPECT_EQ(progress.tried, progress.starts);
+  ASSERT_TRUE(progress.rival);
+  EXPECT_LT((*progress.rival - (right ? displacement + kBetweenHatches : displacement)).norm(), 0.05);
 }
 
 TEST_F(Finding, ARivalThatTheScanContradictsIsNone) {
   (void)search(scan_of(lying({2.0, 0.0, 0.0}), 1.2, 19.5), false);
-  EXPECT_EQ(evidence.tried, evidence.starts);
-  EXPECT_FALSE(evidence.rival);
+  EXPECT_EQ(progress.tried, progress.starts);
+  EXPECT_FALSE(progress.rival);
 }
 
 TEST_F(Finding, AHullThatIsFollowedIsNotSearchedForAndKeepsItsPlaceBesideItsLike) {
@@ -150,11 +150,11 @@ TEST_F(Finding, ABetterPlaceThatTheScanContradictsNeverTakesTheFrame) {
 TEST_F(Finding, AfterAReacquireEdgeTheBerthIsSearchedAnew) {
   const Cloud hull_W = scan_of(lying({-12.0, 1.0, 2.0}));
   (void)search(hull_W);
-  ASSERT_EQ(evidence.tried, evidence.starts);
+  ASSERT_EQ(progress.tried, progress.starts);
   finder.judged(track, true);
-  EXPECT_LT(finder.evidence(Pose::Identity()).tried, finder.evidence(Pose::Identity()).starts);
+  EXPECT_LT(finder.progress(Pose::Identity()).tried, finder.progress(Pose::Identity()).starts);
   (void)step(hull_W);
-  EXPECT_LT(evidence.tried, evidence.starts);
+  EXPECT_LT(progress.tried, progress.starts);
 }
 
 TEST_F(Finding, AHullUnseenForLongIsLookedForBeyondTheEnvelopeToo) {
@@ -172,7 +172,7 @@ TEST_F(Finding, AScanOfAFewPointsIsNoneToSearchWith) {
   few.resize(50);
   for (int i = 0; i < 5; ++i) {
     (void)step(few);
-    EXPECT_LT(evidence.tried, evidence.starts);
+    EXPECT_LT(progress.tried, progress.starts);
   }
 }
 

@@ -120,15 +120,15 @@ TEST(HullMap, AllOfTheMapIsOccupiedAndNothingElse) {
   for (std::size_t i = 0; i < map.cloud_H().size(); i += 97) {
     cells.push_back(map.occupancy().cell_of(map.cloud_H()[i]));
   }
-  const auto worth = [&](int x, int y, int z) {
+  const auto value = [&](int x, int y, int z) {
     std::array<std::uint16_t, OccupancyGrid::kHeights> sums{};
     map.occupancy().correlate(cells, x, y, sums);
     return std::size_t{sums[static_cast<std::size_t>(OccupancyGrid::kUp + z)]};
   };
-  EXPECT_GT(worth(0, 0, 0), 195 * cells.size() / 100);
-  EXPECT_EQ(worth(0, 0, 15), 0U) << "above the box, which is 6 m high";
-  EXPECT_EQ(worth(40, 0, 0), 0U) << "beside it";
-  EXPECT_EQ(worth(0, -25, 0), 0U);
+  EXPECT_GT(value(0, 0, 0), 195 * cells.size() / 100);
+  EXPECT_EQ(value(0, 0, 15), 0U) << "above the box, which is 6 m high";
+  EXPECT_EQ(value(40, 0, 0), 0U) << "beside it";
+  EXPECT_EQ(value(0, -25, 0), 0U);
 }
 
 TEST(HullMap, AShipWithoutAHatchHasNoRims) {

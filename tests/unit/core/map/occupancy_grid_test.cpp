@@ -12,7 +12,7 @@ namespace hulltrack {
 namespace {
 
 using Index = OccupancyGrid::Index;
-using Worth = std::array<std::uint16_t, OccupancyGrid::kHeights>;
+using Values = std::array<std::uint16_t, OccupancyGrid::kHeights>;
 
 Cloud random_cloud(int count, const Point& half, std::mt19937& random) {
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
@@ -23,7 +23,7 @@ Cloud random_cloud(int count, const Point& half, std::mt19937& random) {
   return cloud;
 }
 
-/// What a cell is worth, by looking for it and its six neighbours.
+/// The value of a cell, by looking for it and its six neighbours.
 class Counted {
  public:
   Counted(const OccupancyGrid& grid, const Cloud& cloud) {
@@ -32,7 +32,7 @@ class Counted {
       occupied_.insert({i.x, i.y, i.z});
     }
   }
-  [[nodiscard]] int worth(int x, int y, int z) const {
+  [[nodiscard]] int value(int x, int y, int z) const {
     if (occupied_.contains({x, y, z})) {
       return 2;
     }
@@ -61,14 +61,14 @@ TEST(OccupancyGrid, CorrelationIsWhatCountingCellByCellGives) {
   int most = 0;
   for (int x = -14; x <= 14; x += 2) {
     for (int y = -9; y <= 9; y += 3) {
-      Worth worth{};
-      grid.correlate(cells, x, y, worth);
+      Values values{};
+      grid.correlate(cells, x, y, values);
       for (int k = -OccupancyGrid::kUp; k <= OccupancyGrid::kUp; ++k) {
         int sum = 0;
         for (const Index& c : cells) {
-          sum += counted.worth(c.x + x, c.y + y, c.z + k);
+          sum += counted.value(c.x + x, c.y + y, c.z + k);
         }
-        ASSERT_EQ(worth[static_cast<std::size_t>(OccupancyGrid::kUp + k)], sum)
+        ASSERT_EQ(values[static_cast<std::size_t>(OccupancyGrid::kUp + k)], sum)
             << x << ", " << y << ", " << k;
         most = std::max(most, sum);
       }
@@ -82,9 +82,9 @@ TEST(OccupancyGrid, CorrelationIsAddedToWhatIsThere) {
   const Cloud map = random_cloud(50, {2.0F, 2.0F, 2.0F}, random);
   const OccupancyGrid grid(map);
   const std::vector<Index> cells{grid.cell_of(map.front())};
-  Worth once{};
+  Values once{};
   grid.correlate(cells, 0, 0, once);
-  Worth twice = once;
+  Values twice = once;
   grid.correlate(cells, 0, 0, twice);
   EXPECT_EQ(once[OccupancyGrid::kUp], 2);
   for (std::size_t k = 0; k < once.size(); ++k) {
@@ -126,9 +126,9 @@ TEST(OccupancyGrid, TheHighestShiftOfTheLastColumnIsWithinTheGrid) {
   const OccupancyGrid grid(Cloud{Point::Zero()});
   const Index middle = grid.cell_of(Point::Zero());  // of an odd number of cells on every axis
   const Index top{2 * middle.x, 2 * middle.y, 2 * middle.z + OccupancyGrid::kUp};
-  Worth worth{};
-  grid.correlate(std::vector<Index>{top}, 0, 0, worth);
-  EXPECT_EQ(worth, Worth{});
+  Values values{};
+  grid.correlate(std::vector<Index>{top}, 0, 0, values);
+  EXPECT_EQ(values, Values{});
 }
 
 TEST(OccupancyGrid, PointsHoweverFarOutsideCountNothing) {
@@ -140,9 +140,9 @@ TEST(OccupancyGrid, PointsHoweverFarOutsideCountNothing) {
     }
   }
   for (int x = -40; x <= 40; x += 20) {
-    Worth worth{};
-    grid.correlate(cells, x, 0, worth);
-    EXPECT_EQ(worth, Worth{});
+    Values values{};
+    grid.correlate(cells, x, 0, values);
+    EXPECT_EQ(values, Values{});
   }
 }
 
@@ -164,11 +164,11 @@ TEST(OccupancyGrid, AMapOfAnyLengthAnywhereIsCountedToItsLastCell) {
       const Index at = grid.cell_of(end);
       for (int x = -1; x <= 1; ++x) {
         for (int y = -1; y <= 1; ++y) {
-          Worth worth{};
-          grid.correlate(std::vector<Index>{at}, x, y, worth);
+          Values values{};
+          grid.correlate(std::vector<Index>{at}, x, y, values);
           for (int k = -2; k <= 2; ++k) {
-            ASSERT_EQ(worth[static_cast<std::size_t>(OccupancyGrid::kUp + k)],
-                      counted.worth(at.x + x, at.y + y, at.z + k))
+            ASSERT_EQ(values[static_cast<std::size_t>(OccupancyGrid::kUp + k)],
+                      counted.value(at.x + x, at.y + y, at.z + k))
                 << low.transpose() << " to " << high.transpose() << " at " << x << ", " << y << ", " << k;
           }
         }
@@ -184,10 +184,10 @@ TEST(OccupancyGrid, MastsAndHoldsOfAnyHeightAreCounted) {
   const Counted counted(grid, map);
   for (const Point& p : random_cloud(500, {1.5F, 1.5F, 420.0F}, random)) {
     const Index at = grid.cell_of(p);
-    Worth worth{};
-    grid.correlate(std::vector<Index>{at}, 0, 0, worth);
+    Values values{};
+    grid.correlate(std::vector<Index>{at}, 0, 0, values);
     for (int k = -OccupancyGrid::kUp; k <= OccupancyGrid::kUp; ++k) {
-      ASSERT_EQ(worth[static_cast<std::size_t>(OccupancyGrid::kUp + k)], counted.worth(at.x, at.y, at.z + k))
+      ASSERT_EQ(values[static_cast<std::size_t>(OccupancyGrid::kUp + k)], counted.value(at.x, at.y, at.z + k))
           << p.transpose() << " at " << k;
     }
   }

@@ -131,23 +131,24 @@ TEST(PlaneMap, ThereIsNoneOnAHoldsFloorNorOnCoversBesideIt) {
   EXPECT_GT(deck, 0.7 * (24.0 * 16.0 - 80.0) / 0.04);
 }
 
-TEST(PlaneMap, APatchIsWhatLiesInOneCubeAndFacesOneWay) {
+TEST(PlaneMap, AClusterIsWhatLiesInOneCubeAndFacesOneWay) {
   const PlaneMap map = planes_of(box());
-  std::map<std::uint32_t, std::array<int, 4>> of_patch;
+  std::map<std::uint32_t, std::array<int, 4>> of_cluster;
   std::set<std::array<int, 4>> keys;
   for (const PlaneMap::Plane& plane : map.planes()) {
     std::array<int, 4> key{};
     for (int axis = 0; axis < 3; ++axis) {
       key[static_cast<std::size_t>(axis)] =
-          static_cast<int>(std::floor(plane.centre_H[axis] / PlaneMap::kPatch));
+          static_cast<int>(std::floor(plane.centre_H[axis] / PlaneMap::kClusterSize));
     }
     key[3] = static_cast<int>(plane.surface);
     keys.insert(key);
-    ASSERT_LT(plane.patch, map.patches());
-    EXPECT_EQ(of_patch.try_emplace(plane.patch, key).first->second, key) << "two cubes or ways in one patch";
+    ASSERT_LT(plane.cluster, map.clusters());
+    EXPECT_EQ(of_cluster.try_emplace(plane.cluster, key).first->second, key)
+        << "two cubes or ways in one cluster";
   }
-  EXPECT_EQ(keys.size(), of_patch.size()) << "one cube and way in two patches";
-  EXPECT_EQ(of_patch.size(), map.patches());
+  EXPECT_EQ(keys.size(), of_cluster.size()) << "one cube and way in two clusters";
+  EXPECT_EQ(of_cluster.size(), map.clusters());
 }
 
 TEST(PlaneMap, ItsTreeAnswersWithNumbersOfPlanes) {

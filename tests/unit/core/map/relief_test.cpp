@@ -82,7 +82,7 @@ std::optional<float> horizon_by_definition(const std::map<std::pair<int, int>, f
 
 TEST(Relief, AHorizonIsTheLeastOfTheHighestInEightDirections) {
   std::mt19937 random(5);
-  std::size_t pits = 0;
+  std::size_t holds = 0;
   for (const int points : {200, 1000, 5000}) {
     std::uniform_real_distribution<float> along(0.0F, 45.0F);
     std::uniform_real_distribution<float> up(0.0F, 9.0F);
@@ -104,23 +104,23 @@ TEST(Relief, AHorizonIsTheLeastOfTheHighestInEightDirections) {
         const float z = horizon.value_or(0.0F) - Relief::kDepth;
         const Point p((static_cast<float>(column) + 0.5F) * Relief::kCell,
                       (static_cast<float>(row) + 0.5F) * Relief::kCell, z);
-        ASSERT_EQ(relief.in_pit(p - Point(0.0F, 0.0F, 0.01F)), horizon.has_value()) << column << ", " << row;
-        ASSERT_FALSE(relief.in_pit(p + Point(0.0F, 0.0F, 0.01F))) << column << ", " << row;
-        pits += horizon ? 1 : 0;
+        ASSERT_EQ(relief.in_hold(p - Point(0.0F, 0.0F, 0.01F)), horizon.has_value()) << column << ", " << row;
+        ASSERT_FALSE(relief.in_hold(p + Point(0.0F, 0.0F, 0.01F))) << column << ", " << row;
+        holds += horizon ? 1 : 0;
       }
     }
   }
-  EXPECT_GT(pits, 10000U);
+  EXPECT_GT(holds, 10000U);
 }
 
 TEST(Relief, AHoldIsAPitAndItsRimIsTheCoaming) {
   const Relief relief(ship());
   for (float x = -7.0F; x <= 7.0F; x += 0.7F) {
     for (float y = -4.0F; y <= 4.0F; y += 0.7F) {
-      EXPECT_TRUE(relief.in_pit({x, y, kFloor})) << x << ", " << y;
-      EXPECT_TRUE(relief.in_pit({x, y, kRim - 2.1F})) << "cargo that is 2.1 m below the rim";
-      EXPECT_FALSE(relief.in_pit({x, y, kRim - 1.9F})) << "cargo that is 1.9 m below it";
-      EXPECT_NEAR(relief.rim_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
+      EXPECT_TRUE(relief.in_hold({x, y, kFloor})) << x << ", " << y;
+      EXPECT_TRUE(relief.in_hold({x, y, kRim - 2.1F})) << "cargo that is 2.1 m below the rim";
+      EXPECT_FALSE(relief.in_hold({x, y, kRim - 1.9F})) << "cargo that is 1.9 m below it";
+      EXPECT_NEAR(relief.rim_height_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
     }
   }
 }
@@ -129,12 +129,12 @@ TEST(Relief, ADeckBetweenBulwarkCoamingAndHouseIsNoPit) {
   const Relief relief(ship());
   for (float x = -14.0F; x <= 19.0F; x += 0.7F) {
     for (const float y : {-9.0F, -7.0F, -5.7F, 5.7F, 7.0F, 9.0F}) {
-      EXPECT_FALSE(relief.in_pit({x, y, 0.0F})) << x << ", " << y;
-      EXPECT_TRUE(std::isnan(relief.rim_around({x, y, 0.0F}))) << x << ", " << y;
+      EXPECT_FALSE(relief.in_hold({x, y, 0.0F})) << x << ", " << y;
+      EXPECT_TRUE(std::isnan(relief.rim_height_around({x, y, 0.0F}))) << x << ", " << y;
     }
   }
   for (const float y : {-7.0F, 0.0F, 7.0F}) {
-    EXPECT_FALSE(relief.in_pit({-13.0F, y, 0.0F})) << "between house and hatch";
+    EXPECT_FALSE(relief.in_hold({-13.0F, y, 0.0F})) << "between house and hatch";
   }
 }
 
@@ -169,7 +169,7 @@ TEST(Relief, AGapInACoamingLowersNoRim) {
   const Relief relief(cloud);
   for (float x = -7.0F; x <= 7.0F; x += 0.7F) {
     for (float y = -4.0F; y <= 4.0F; y += 0.7F) {
-      EXPECT_NEAR(relief.rim_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
+      EXPECT_NEAR(relief.rim_height_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
     }
   }
   EXPECT_FALSE(relief.in_covers_place({-3.0F, 5.0F, kRim})) << "the coaming's top";
@@ -191,20 +191,20 @@ TEST(Relief, EveryHoldHasItsNumber) {
     cloud.push_back(cloud[i] + Point(40.0F, 0.0F, 0.0F));
   }
   const Relief relief(cloud);
-  const std::uint32_t aft = relief.pit_near({0.0F, 0.0F, 0.0F}, 1.0F);
-  const std::uint32_t forward = relief.pit_near({40.0F, 0.0F, 0.0F}, 1.0F);
-  EXPECT_NE(aft, Relief::kNoPit);
-  EXPECT_NE(forward, Relief::kNoPit);
+  const std::uint32_t aft = relief.hold_near({0.0F, 0.0F, 0.0F}, 1.0F);
+  const std::uint32_t forward = relief.hold_near({40.0F, 0.0F, 0.0F}, 1.0F);
+  EXPECT_NE(aft, Relief::kNoHold);
+  EXPECT_NE(forward, Relief::kNoHold);
   EXPECT_NE(aft, forward);
   for (const Point& at : {Point(8.2F, 3.0F, kRim), Point(-8.2F, 0.0F, 0.5F), Point(2.0F, -5.2F, 0.0F)}) {
-    EXPECT_EQ(relief.pit_near(at, 1.0F), aft) << at.transpose();
+    EXPECT_EQ(relief.hold_near(at, 1.0F), aft) << at.transpose();
   }
-  EXPECT_EQ(relief.pit_near({12.0F, 0.0F, 0.0F}, 1.0F), Relief::kNoPit);
+  EXPECT_EQ(relief.hold_near({12.0F, 0.0F, 0.0F}, 1.0F), Relief::kNoHold);
 }
 
 TEST(Relief, AHoldThatNoSurveySawIsNone) {
   const Relief relief(ship(false));
-  EXPECT_TRUE(std::isnan(relief.rim_around({0.0F, 0.0F, 0.0F})));
+  EXPECT_TRUE(std::isnan(relief.rim_height_around({0.0F, 0.0F, 0.0F})));
 }
 
 TEST(Relief, TheShadowBesideAPitIsPit) {
@@ -214,20 +214,20 @@ TEST(Relief, TheShadowBesideAPitIsPit) {
   });
   const Relief relief(cloud);
   for (const float x : {-5.0F, 0.0F, 5.0F}) {
-    EXPECT_NEAR(relief.rim_around({x, 4.0F, kFloor}), kRim, 1e-3F) << x;
+    EXPECT_NEAR(relief.rim_height_around({x, 4.0F, kFloor}), kRim, 1e-3F) << x;
   }
 }
 
-TEST(Relief, PointOverThePitIsTheNearestCellInsideOfItsRim) {
+TEST(Relief, PointOverTheHoldIsTheNearestCellInsideOfItsRim) {
   const Relief relief(ship());
-  const auto over = relief.over_pit_near({0.0F, 5.8F, kRim}, 2.0F);
+  const auto over = relief.over_hold_near({0.0F, 5.8F, kRim}, 2.0F);
   ASSERT_TRUE(over);
   EXPECT_NEAR(over->x(), 0.0F, Relief::kCell);
   EXPECT_LT(over->y(), 5.0F - Relief::kCell / 2) << "inside";
   EXPECT_GT(over->y(), 5.0F - 3.0F * Relief::kCell) << "near";
   EXPECT_EQ(over->z(), kRim);
-  EXPECT_FALSE(relief.over_pit_near({0.0F, 5.8F, kRim}, 0.5F)) << "out of reach";
-  EXPECT_FALSE(relief.over_pit_near({19.0F, 9.0F, kRim}, 2.0F)) << "no hatch there";
+  EXPECT_FALSE(relief.over_hold_near({0.0F, 5.8F, kRim}, 0.5F)) << "out of reach";
+  EXPECT_FALSE(relief.over_hold_near({19.0F, 9.0F, kRim}, 2.0F)) << "no hatch there";
 }
 
 /// An open box: four walls of 3 m about a floor, its corner at `corner`.
@@ -239,7 +239,7 @@ Cloud open_box(const Point& corner, float side) {
   return cloud;
 }
 
-TEST(Relief, ASmallPitHasItsOwnRimWhereverTheMapEnds) {
+TEST(Relief, ASmallHoldHasItsOwnRimWhereverTheMapEnds) {
   // Smaller than the window that rims are smoothed in, and as near to the map's edges as can be.
   for (float side = 0.75F; side < 4.0F; side += 0.25F) {
     for (const float before : {0.0F, 0.25F, 0.5F, 1.0F, 2.0F, 3.5F}) {
@@ -247,8 +247,9 @@ TEST(Relief, ASmallPitHasItsOwnRimWhereverTheMapEnds) {
       cloud.emplace_back(0.0F, 0.0F, 0.0F);
       const Relief relief(cloud);
       const float middle = before + 0.5F * side;
-      if (const auto over = relief.over_pit_near({middle, 0.5F * before + 0.5F * side, 3.0F}, side)) {
-        EXPECT_NEAR(relief.rim_around(*over), 3.0F, 0.15F) << side << " m, " << before << " m from the edge";
+      if (const auto over = relief.over_hold_near({middle, 0.5F * before + 0.5F * side, 3.0F}, side)) {
+        EXPECT_NEAR(relief.rim_height_around(*over), 3.0F, 0.15F)
+            << side << " m, " << before << " m from the edge";
       } else {
         EXPECT_LT(side, 1.5F) << before << " m from the edge";
       }
@@ -256,15 +257,15 @@ TEST(Relief, ASmallPitHasItsOwnRimWhereverTheMapEnds) {
   }
 }
 
-TEST(Relief, ThePitAtTheMapsEdgeHasNoOthersRim) {
+TEST(Relief, TheHoldAtTheMapsEdgeHasNoOthersRim) {
   Cloud cloud = open_box({0.0F, 0.0F, 0.0F}, 1.5F);
   for (const Point& p :
        open_box({8.0F, 8.0F, 20.0F}, 6.0F)) {  // far above, first in no order and last in none
     cloud.push_back(p);
   }
   const Relief relief(cloud);
-  EXPECT_NEAR(relief.rim_around({0.75F, 0.75F, 0.0F}), 3.0F, 0.15F);
-  EXPECT_NEAR(relief.rim_around({11.0F, 11.0F, 20.0F}), 23.0F, 0.15F);
+  EXPECT_NEAR(relief.rim_height_around({0.75F, 0.75F, 0.0F}), 3.0F, 0.15F);
+  EXPECT_NEAR(relief.rim_height_around({11.0F, 11.0F, 20.0F}), 23.0F, 0.15F);
 }
 
 TEST(Relief, AHoldThatWasSeenFromOneSideAloneIsWhollyPit) {
@@ -275,7 +276,7 @@ TEST(Relief, AHoldThatWasSeenFromOneSideAloneIsWhollyPit) {
   const Relief relief(cloud);
   for (float x = 1.0F; x < 12.5F; x += 0.7F) {
     for (float y = 1.0F; y < 12.5F; y += 0.7F) {
-      EXPECT_NEAR(relief.rim_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
+      EXPECT_NEAR(relief.rim_height_around({x, y, kFloor}), kRim, 1e-3F) << x << ", " << y;
       EXPECT_TRUE(relief.in_covers_place({x, y, kRim + 0.2F})) << x << ", " << y;
     }
   }
@@ -295,9 +296,10 @@ TEST(Relief, ShipsFarApartAreSeenAsEachAlone) {
       for (const float z : {kFloor, 0.0F, 2.0F}) {
         const Point p(x, y, z);
         for (const Point& q : {p, Point(p + apart)}) {
-          EXPECT_EQ(relief.in_pit(q), alone.in_pit(p)) << q.transpose();
+          EXPECT_EQ(relief.in_hold(q), alone.in_hold(p)) << q.transpose();
           EXPECT_EQ(relief.under_covers_place(q), alone.under_covers_place(p)) << q.transpose();
-          EXPECT_EQ(std::isnan(relief.rim_around(q)), std::isnan(alone.rim_around(p))) << q.transpose();
+          EXPECT_EQ(std::isnan(relief.rim_height_around(q)), std::isnan(alone.rim_height_around(p)))
+              << q.transpose();
         }
       }
     }
@@ -321,9 +323,9 @@ TEST(Relief, OutsideOfTheMapIsNothing) {
   const Relief relief(ship());
   for (const Point& p :
        {Point(30, 0, 0), Point(-30, 0, 0), Point(0, 30, 0), Point(0, -30, 0), Point(1e30F, -1e30F, 0)}) {
-    EXPECT_FALSE(relief.in_pit(p));
+    EXPECT_FALSE(relief.in_hold(p));
     EXPECT_FALSE(relief.in_covers_place(p));
-    EXPECT_TRUE(std::isnan(relief.rim_around(p)));
+    EXPECT_TRUE(std::isnan(relief.rim_height_around(p)));
   }
 }
 

@@ -10,43 +10,43 @@ namespace hulltrack {
 namespace {
 
 constexpr double kKernel = 0.03;  // m
-constexpr int kPerPatch = 25;
+constexpr int kPerCluster = 25;
 constexpr int kScenes = 400;
 constexpr BendShape kShape{0.0, 60.0};
 
 struct Pair {
   Eigen::Vector3d p;
   Eigen::Vector3d n;
-  std::uint32_t patch;
+  std::uint32_t cluster;
 };
 
-/// Patches of 2 x 2 m on the six sides of a box of 40 x 20 x 6 m, one side after the other.
-std::vector<Pair> box_of_patches(std::uint32_t patches, std::mt19937& random) {
+/// Clusters of 2 x 2 m on the six sides of a box of 40 x 20 x 6 m, one side after the other.
+std::vector<Pair> box_of_clusters(std::uint32_t clusters, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const Eigen::Vector3d half(20.0, 10.0, 3.0);
   std::vector<Pair> pairs;
-  for (std::uint32_t patch = 0; patch < patches; ++patch) {
-    const auto axis = static_cast<int>(patch % 3);
-    const double side = patch % 6 < 3 ? -1.0 : 1.0;
+  for (std::uint32_t cluster = 0; cluster < clusters; ++cluster) {
+    const auto axis = static_cast<int>(cluster % 3);
+    const double side = cluster % 6 < 3 ? -1.0 : 1.0;
     Eigen::Vector3d middle = half.cwiseProduct(Eigen::Vector3d(unit(random), unit(random), unit(random)));
     middle[axis] = side * half[axis];
-    for (int i = 0; i < kPerPatch; ++i) {
+    for (int i = 0; i < kPerCluster; ++i) {
       Eigen::Vector3d d(unit(random), unit(random), unit(random));
       d[axis] = 0.0;
-      pairs.push_back({middle + d, Eigen::Vector3d::Unit(axis), patch});
+      pairs.push_back({middle + d, Eigen::Vector3d::Unit(axis), cluster});
     }
   }
   return pairs;
 }
 
-/// How far each point is off its plane: what it has of its own and what its patch has in common, m.
+/// How far each point is off its plane: what it has of its own and what its cluster has in common, m.
 std::vector<double> draw_noise(const std::vector<Pair>& pairs, double own, double common,
                                std::mt19937& random) {
   std::normal_distribution<double> normal;
   std::vector<double> noise;
   double shared = 0.0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (i == 0 || pairs[i].patch != pairs[i - 1].patch) {
+    if (i == 0 || pairs[i].cluster != pairs[i - 1].cluster) {
       shared = common * normal(random);
     }
     noise.push_back(shared + own * normal(random));
@@ -64,18 +64,18 @@ struct Fit {
 Fit fit(const std::vector<Pair>& pairs, const std::vector<double>& noise, double bend) {
   Fit out;
   PlaneCovarianceEstimator estimator;
-  estimator.reset(pairs.back().patch + 1);
+  estimator.reset(pairs.back().cluster + 1);
   constexpr int kSteps = 6;
   for (int step = 1; step <= kSteps; ++step) {
     PlaneSystem system(Eigen::Vector3d::Zero(), kKernel);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const auto& [p, n, patch] = pairs[i];
+      const auto& [p, n, cluster] = pairs[i];
       const double rise = kShape.rise(p.x());
       const double r =
           noise[i] + bend * rise * n.z() + p.cross(n).dot(out.twist.head<3>()) + n.dot(out.twist.tail<3>());
       system.add(p, n, r, rise);
       if (step == kSteps) {
-        estimator.add(system, patch, p, n, r, rise);
+        estimator.add(system, cluster, p, n, r, rise);
       }
     }
     out.twist += system.solve().twist;
@@ -95,7 +95,7 @@ struct Campaign {
 
 Campaign run(double own, double common, double bend) {
   std::mt19937 random(1);
-  const std::vector<Pair> pairs = box_of_patches(48, random);
+  const std::vector<Pair> pairs = box_of_clusters(48, random);
   Campaign out;
   double off2 = 0.0;
   double sigma2 = 0.0;
@@ -116,7 +116,7 @@ Campaign run(double own, double common, double bend) {
 }
 
 /// The sample covariance in units of the claimed one has eigenvalues within (1 +- sqrt(6 / 400))^2 = 0.77 ..
-/// 1.26 for Gaussian errors (Marchenko and Pastur); a tenth more for the shares that patches differ by.
+/// 1.26 for Gaussian errors (Marchenko and Pastur); a tenth more for the shares that clusters differ by.
 void expect_alike(const Matrix6& sample, const Matrix6& claimed) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> eigen(sample, claimed);
   EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.67) << eigen.eigenvalues().transpose();
@@ -139,21 +139,21 @@ double correlation_of_pulls(double own, double common, std::mt19937& random) {
   return products / squares;
 }
 
-/// trace(B^-1 B_patches) / 6 where any two pulls of a patch have this correlation.
+/// trace(B^-1 B_clusters) / 6 where any two pulls of a cluster have this correlation.
 double planted_ratio(const std::vector<Pair>& pairs, double correlation) {
   const PlaneSystem system(Eigen::Vector3d::Zero(), kKernel);
   Matrix6 B = Matrix6::Zero();
-  std::vector<Twist> sums(pairs.back().patch + 1, Twist::Zero());
+  std::vector<Twist> sums(pairs.back().cluster + 1, Twist::Zero());
   for (const Pair& pair : pairs) {
     const Twist j = system.jacobian(pair.p, pair.n, 0.0).head<6>();
     B += j * j.transpose();
-    sums[pair.patch] += j;
+    sums[pair.cluster] += j;
   }
-  Matrix6 B_patches = (1.0 - correlation) * B;
+  Matrix6 B_clusters = (1.0 - correlation) * B;
   for (const Twist& sum : sums) {
-    B_patches += correlation * sum * sum.transpose();
+    B_clusters += correlation * sum * sum.transpose();
   }
-  return B.ldlt().solve(B_patches).trace() / 6.0;
+  return B.ldlt().solve(B_clusters).trace() / 6.0;
 }
 
 TEST(PlaneCovariance, OfIndependentNoiseIsThatOfTheErrorsAndNothingIsShared) {
@@ -162,10 +162,10 @@ TEST(PlaneCovariance, OfIndependentNoiseIsThatOfTheErrorsAndNothingIsShared) {
   expect_alike(campaign.sample, campaign.claimed);
 }
 
-TEST(PlaneCovariance, SharedIsTheRatioOfPatchesToPairsAndMakesTheCovarianceRight) {
+TEST(PlaneCovariance, SharedIsTheRatioOfClustersToPairsAndMakesTheCovarianceRight) {
   constexpr double kOwn = 0.0175;
   std::mt19937 random(1);
-  const std::vector<Pair> pairs = box_of_patches(48, random);  // those of run()
+  const std::vector<Pair> pairs = box_of_clusters(48, random);  // those of run()
   for (const double common : {0.005, 0.01}) {
     const Campaign campaign = run(kOwn, common, 0.0);
     const double planted = planted_ratio(pairs, correlation_of_pulls(kOwn, common, random));
@@ -187,7 +187,7 @@ TEST(PlaneCovariance, BendOffIsTheBendThatTheFitDoesNotKnowWithItsScatter) {
 
 TEST(PlaneCovariance, ByBendIsHowFarThePoseMovesWhenTheMapIsBent) {
   std::mt19937 random(2);
-  const std::vector<Pair> pairs = box_of_patches(48, random);
+  const std::vector<Pair> pairs = box_of_clusters(48, random);
   const std::vector<double> none(pairs.size(), 0.0);
   constexpr double kBend = 1e-3;
   const PlaneCovariance covariance = fit(pairs, none, 0.0).covariance;
@@ -197,18 +197,18 @@ TEST(PlaneCovariance, ByBendIsHowFarThePoseMovesWhenTheMapIsBent) {
       << covariance.by_bend.transpose() << " / " << moved.transpose();
 }
 
-TEST(PlaneCovariance, FewerThanTwelvePatchesAreTooFew) {
+TEST(PlaneCovariance, FewerThanTwelveClustersAreTooFew) {
   std::mt19937 random(3);
-  for (const std::uint32_t patches : {6u, 11u, 12u}) {
-    const std::vector<Pair> pairs = box_of_patches(patches, random);
-    EXPECT_EQ(fit(pairs, draw_noise(pairs, 0.02, 0.0, random), 0.0).covariance.valid, patches == 12u);
+  for (const std::uint32_t clusters : {6u, 11u, 12u}) {
+    const std::vector<Pair> pairs = box_of_clusters(clusters, random);
+    EXPECT_EQ(fit(pairs, draw_noise(pairs, 0.02, 0.0, random), 0.0).covariance.valid, clusters == 12u);
   }
   EXPECT_FALSE(PlaneCovarianceEstimator().estimate().valid);
 }
 
 TEST(PlaneCovariance, AFreeDirectionHasNone) {
   std::mt19937 random(4);
-  std::vector<Pair> pairs = box_of_patches(48, random);
+  std::vector<Pair> pairs = box_of_clusters(48, random);
   std::erase_if(pairs, [](const Pair& pair) { return pair.n.x() != 0.0; });
   EXPECT_FALSE(fit(pairs, draw_noise(pairs, 0.02, 0.0, random), 0.0).covariance.valid);
 }
@@ -216,11 +216,11 @@ TEST(PlaneCovariance, AFreeDirectionHasNone) {
 TEST(PlaneCovariance, OfWallsAloneSaysNothingAboutTheBend) {
   std::mt19937 random(5);
   PlaneCovarianceEstimator estimator;
-  const std::vector<Pair> pairs = box_of_patches(48, random);
+  const std::vector<Pair> pairs = box_of_clusters(48, random);
   const PlaneSystem system(Eigen::Vector3d::Zero(), kKernel);
   estimator.reset(48);
   for (const Pair& pair : pairs) {
-    estimator.add(system, pair.patch, pair.p, pair.n, 0.01, 0.0);
+    estimator.add(system, pair.cluster, pair.p, pair.n, 0.01, 0.0);
   }
   const PlaneCovariance covariance = estimator.estimate();
   EXPECT_TRUE(covariance.valid);
@@ -230,12 +230,12 @@ TEST(PlaneCovariance, OfWallsAloneSaysNothingAboutTheBend) {
 
 TEST(PlaneCovariance, ResetForgetsEverything) {
   std::mt19937 random(6);
-  const std::vector<Pair> pairs = box_of_patches(48, random);
+  const std::vector<Pair> pairs = box_of_clusters(48, random);
   const PlaneSystem system(Eigen::Vector3d::Zero(), kKernel);
   const auto add_all = [&](PlaneCovarianceEstimator& estimator) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const auto& [p, n, patch] = pairs[i];
-      estimator.add(system, patch, p, n, i % 2 == 0 ? 0.01 : -0.01, kShape.rise(p.x()));
+      const auto& [p, n, cluster] = pairs[i];
+      estimator.add(system, cluster, p, n, i % 2 == 0 ? 0.01 : -0.01, kShape.rise(p.x()));
     }
   };
   PlaneCovarianceEstimator fresh;

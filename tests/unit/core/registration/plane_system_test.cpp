@@ -166,13 +166,13 @@ TEST(PlaneSystem, ThePriorOfTheBendCountsAsOneMorePair) {
     pair.p += noise(random) * pair.n;
   }
   const PlaneSystem system = system_of(pairs, Pose::Identity(), 0.0, 0.05);
-  for (const double worth : {0.0, 0.5, 10.0, 1e4}) {
+  for (const double information : {0.0, 0.5, 10.0, 1e4}) {
     for (const double off : {0.0, 0.04, -0.1}) {
-      const PlaneSystem::Solution solution = system.solve(off, worth);
-      Eigen::VectorXd x = by_qr(pairs, system, 0, 7, worth, off);
+      const PlaneSystem::Solution solution = system.solve(off, information);
+      Eigen::VectorXd x = by_qr(pairs, system, 0, 7, information, off);
       x.head<3>() /= PlaneSystem::kLever;
-      EXPECT_LT((solution.twist - x.head<6>()).norm(), 1e-10) << worth << ", " << off;
-      EXPECT_NEAR(solution.bend, x[6], 1e-10) << worth << ", " << off;
+      EXPECT_LT((solution.twist - x.head<6>()).norm(), 1e-10) << information << ", " << off;
+      EXPECT_NEAR(solution.bend, x[6], 1e-10) << information << ", " << off;
     }
   }
 }

@@ -246,12 +246,11 @@ TEST(PointToPlaneIcp, ScoreIsHighestAtTheTruthAndNoMoreThanItsPoints) {
   const Cloud source = scan_of_ship(T_W_H, 0.02, 1);
   const PlaneScore truth = icp.score(source, planes(), T_W_H.inverse());
   EXPECT_EQ(truth.points, source.size());
-  EXPECT_LE(truth.worth, truth.points);
+  EXPECT_LE(truth.sum, truth.points);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double shift : {-1.0, -0.3, 0.3, 1.0}) {
       const Pose off = Eigen::Translation3d(shift * Eigen::Vector3d::Unit(axis)) * T_W_H;
-      EXPECT_LT(icp.score(source, planes(), off.inverse()).worth, 0.97 * truth.worth)
-          << axis << ": " << shift;
+      EXPECT_LT(icp.score(source, planes(), off.inverse()).sum, 0.97 * truth.sum) << axis << ": " << shift;
     }
   }
   EXPECT_EQ(icp.score({}, planes(), Pose::Identity()).points, 0u);

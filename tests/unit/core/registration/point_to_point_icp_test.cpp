@@ -12,7 +12,7 @@ namespace hulltrack {
 namespace {
 
 // Part of a hold with its coamings, decks and a house, on a jittered grid: all six degrees are held.
-Cloud hull_patch(float spacing, unsigned seed) {
+Cloud piece_of_hull(float spacing, unsigned seed) {
   std::mt19937 rng(seed);
   std::normal_distribution<float> jitter(0.0F, 0.3F * spacing);
   Cloud cloud;
@@ -102,7 +102,7 @@ IcpResult plain_icp(const Cloud& source, const Cloud& target, const Pose& T_init
 }
 
 TEST(PointToPointIcp, EqualsThePlainAlgorithmBitForBit) {
-  const Cloud map = hull_patch(0.15F, 1);
+  const Cloud map = piece_of_hull(0.15F, 1);
   const KdTree tree(map);
   const IcpConfig config;
   PointToPointIcp icp(config);  // one object for all: nothing is carried over
@@ -120,7 +120,7 @@ TEST(PointToPointIcp, EqualsThePlainAlgorithmBitForBit) {
 }
 
 TEST(PointToPointIcp, FindsAKnownMotionUnderNoiseAndClutter) {
-  const Cloud map = hull_patch(0.05F, 2);
+  const Cloud map = piece_of_hull(0.05F, 2);
   const KdTree tree(map);
   IcpConfig config;
   config.translation_epsilon = 1e-5;
@@ -148,7 +148,7 @@ TEST(PointToPointIcp, FindsAKnownMotionUnderNoiseAndClutter) {
 TEST(PointToPointIcp, AgreesWithItselfInAnotherSourceFrame) {
   // The source frame is a name only: moving the points and the start pose together changes nothing but
   // rounding.
-  const Cloud map = hull_patch(0.1F, 3);
+  const Cloud map = piece_of_hull(0.1F, 3);
   const KdTree tree(map);
   PointToPointIcp icp(IcpConfig{});
   const Cloud source = noisy_subset(map, 17, 0.02F, 3);
@@ -166,7 +166,7 @@ TEST(PointToPointIcp, AgreesWithItselfInAnotherSourceFrame) {
 }
 
 TEST(PointToPointIcp, StopsAtOnceWhereItStartsRight) {
-  const Cloud map = hull_patch(0.1F, 4);
+  const Cloud map = piece_of_hull(0.1F, 4);
   const KdTree tree(map);
   const IcpResult result = PointToPointIcp(IcpConfig{}).align(map, tree, Pose::Identity());
   EXPECT_TRUE(result.converged);
@@ -177,7 +177,7 @@ TEST(PointToPointIcp, StopsAtOnceWhereItStartsRight) {
 }
 
 TEST(PointToPointIcp, StopsAtTheIterationLimit) {
-  const Cloud map = hull_patch(0.1F, 5);
+  const Cloud map = piece_of_hull(0.1F, 5);
   const KdTree tree(map);
   IcpConfig config;
   config.max_iterations = 2;
@@ -188,7 +188,7 @@ TEST(PointToPointIcp, StopsAtTheIterationLimit) {
 }
 
 TEST(PointToPointIcp, SaysWhyItCannotAlign) {
-  const Cloud map = hull_patch(0.1F, 6);
+  const Cloud map = piece_of_hull(0.1F, 6);
   const KdTree tree(map);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Cloud line;
@@ -220,7 +220,7 @@ TEST(PointToPointIcp, SaysWhyItCannotAlign) {
 }
 
 TEST(PointToPointIcp, IgnoresSourcePointsThatAreNotFinite) {
-  const Cloud map = hull_patch(0.1F, 7);
+  const Cloud map = piece_of_hull(0.1F, 7);
   const KdTree tree(map);
   PointToPointIcp icp(IcpConfig{});
   const Pose T_init = small_pose(radians(0.2), 0.1, 7);

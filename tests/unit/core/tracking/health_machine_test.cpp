@@ -29,7 +29,7 @@ class Frames {
   }
 
   HealthVerdict step(const Pose& T_W_H, bool reacquire) {
-    Evidence e;
+    FrameFindings e;
     e.time = MeasurementTime{frame_++ * milliseconds(100)};
     e.bracketed = e.registered = e.converged = true;
     e.matched = 1000;

@@ -14,8 +14,8 @@ using std::chrono::milliseconds;
 
 HealthLimits limits() { return health_limits(TrackerConfig{}, 60.0); }
 
-Evidence good(int frame) {
-  Evidence e;
+FrameFindings good(int frame) {
+  FrameFindings e;
   e.time = MeasurementTime{frame * milliseconds(100)};
   e.bracketed = e.registered = e.converged = true;
   e.matched = 1000;
@@ -29,8 +29,8 @@ struct Machine {
   HealthMemory memory;
   int frame = 0;
 
-  HealthVerdict step(const std::function<void(Evidence&)>& change = {}) {
-    Evidence e = good(frame++);
+  HealthVerdict step(const std::function<void(FrameFindings&)>& change = {}) {
+    FrameFindings e = good(frame++);
     if (change) {
       change(e);
     }
@@ -53,7 +53,7 @@ Machine tracking_machine() {
 
 struct Case {
   const char* what;
-  std::function<void(Evidence&)> change;
+  std::function<void(FrameFindings&)> change;
   State state;    // of the frame, when it was tracking before
   Faults faults;  // exactly
 };
@@ -61,49 +61,51 @@ struct Case {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all{
       {"nothing registered",
-       [](Evidence& e) {
+       [](FrameFindings& e) {
          e.registered = e.converged = false;
          e.matched = 0;
          e.trouble = "none";
        },
        State::lost, fault::few_matches | fault::not_converged},
       {"not converged",
-       [](Evidence& e) {
+       [](FrameFindings& e) {
          e.converged = false;
          e.trouble = "iterations";
        },
        State::degraded, fault::not_converged},
-      {"few matches", [](Evidence& e) { e.matched = 199; }, State::lost, fault::few_matches},
-      {"Q1 between the limits", [](Evidence& e) { e.metrics.q1 = 1.51 * 0.08; }, State::degraded,
+      {"few matches", [](FrameFindings& e) { e.matched = 199; }, State::lost, fault::few_matches},
+      {"Q1 between the limits", [](FrameFindings& e) { e.metrics.q1 = 1.51 * 0.08; }, State::degraded,
        fault::q1_high},
-      {"Q1 above lost", [](Evidence& e) { e.metrics.q1 = 3.01 * 0.08; }, State::lost, fault::q1_high},
-      {"nothing to expect of Q1", [](Evidence& e) { e.metrics.q1_expected.reset(); }, State::degraded,
+      {"Q1 above lost", [](FrameFindings& e) { e.metrics.q1 = 3.01 * 0.08; }, State::lost, fault::q1_high},
+      {"nothing to expect of Q1", [](FrameFindings& e) { e.metrics.q1_expected.reset(); }, State::degraded,
        fault::q1_high},
-      {"no map in view", [](Evidence& e) { e.metrics.valid = false; }, State::lost, fault::q1_high},
-      {"contradicted", [](Evidence& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; },
-       State::lost, fault::contradicted},
-      {"unconstrained", [](Evidence& e) { e.integrity = {.faults = fault::unconstrained, .reason = "free"}; },
+      {"no map in view", [](FrameFindings& e) { e.metrics.valid = false; }, State::lost, fault::q1_high},
+      {"contradicted",
+       [](FrameFindings& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; }, State::lost,
+       fault::contradicted},
+      {"unconstrained",
+       [](FrameFindings& e) { e.integrity = {.faults = fault::unconstrained, .reason = "free"}; },
        State::degraded, fault::unconstrained},
-      {"outside the envelope", [](Evidence& e) { e.displacement.y() = 2.01; }, State::lost,
+      {"outside the envelope", [](FrameFindings& e) { e.displacement.y() = 2.01; }, State::lost,
        fault::implausible},
-      {"jump", [](Evidence& e) { e.displacement.x() = 1.5; }, State::degraded, fault::implausible},
+      {"jump", [](FrameFindings& e) { e.displacement.x() = 1.5; }, State::degraded, fault::implausible},
       {"turn",
-       [](Evidence& e) {
+       [](FrameFindings& e) {
          e.rotation = rotation_from_rpy({0, 0, radians(3.0)});
        },
        State::degraded, fault::implausible},
-      {"joints do not bracket", [](Evidence& e) { e.bracketed = e.registered = false; }, State::fault,
+      {"joints do not bracket", [](FrameFindings& e) { e.bracketed = e.registered = false; }, State::fault,
        fault::plc_stale},
-      {"PLC stale", [](Evidence& e) { e.standing = fault::plc_stale; }, State::fault, fault::plc_stale},
+      {"PLC stale", [](FrameFindings& e) { e.standing = fault::plc_stale; }, State::fault, fault::plc_stale},
       {"PLC value and no bracket",
-       [](Evidence& e) {
+       [](FrameFindings& e) {
          e.standing = fault::plc_value;
          e.bracketed = e.registered = false;
        },
        State::fault, fault::plc_stale | fault::plc_value},
-      {"a LiDAR of several silent", [](Evidence& e) { e.standing = fault::lidar_silent; }, State::degraded,
-       fault::lidar_silent},
-      {"held", [](Evidence& e) { e.hold = true; }, State::held, 0},
+      {"a LiDAR of several silent", [](FrameFindings& e) { e.standing = fault::lidar_silent; },
+       State::degraded, fault::lidar_silent},
+      {"held", [](FrameFindings& e) { e.hold = true; }, State::held, 0},
   };
   return all;
 }
@@ -123,7 +125,7 @@ HealthVerdict verdict_on(double q1, std::optional<double> expected, const Health
   Machine machine;
   machine.set = set;
   machine.run(10);
-  return machine.step([&](Evidence& e) {
+  return machine.step([&](FrameFindings& e) {
     e.metrics.q1 = q1;
     e.metrics.q1_expected = expected;
   });
@@ -163,14 +165,14 @@ TEST(Health, ASitesOwnLimitDecidesAloneWhereNothingIsExpected) {
 }
 
 TEST(Health, Q1OfAFewPointsLeavesTheDecisionToIntegrity) {
-  const auto few = [](Evidence& e) {
+  const auto few = [](FrameFindings& e) {
     e.metrics.q1 = 0.5;
     e.metrics.q1_expected.reset();
     e.metrics.few_surfels = true;
   };
   Machine machine = tracking_machine();
   EXPECT_EQ(machine.step(few).state, State::tracking);
-  const HealthVerdict verdict = machine.step([&](Evidence& e) {
+  const HealthVerdict verdict = machine.step([&](FrameFindings& e) {
     few(e);
     e.integrity = {.faults = fault::unconstrained, .reason = "few here as well"};
   });
@@ -198,7 +200,7 @@ TEST(Health, ReturnsAfterRecoverFramesGoodFramesInARow) {
 
 TEST(Health, NothingIsHealthyWithJointsOnTrialButGoodFramesCount) {
   Machine machine = tracking_machine();
-  const auto on_trial = [](Evidence& e) {
+  const auto on_trial = [](FrameFindings& e) {
     e.standing = fault::plc_value;
     e.joints_on_trial = true;
     e.joint_trouble = "travel waits";
@@ -214,7 +216,7 @@ TEST(Health, NothingIsHealthyWithJointsOnTrialButGoodFramesCount) {
 
 TEST(Health, NothingIsHealthyWhileItIsOpenWhichOfTwoSensorsIsMeant) {
   Machine machine = tracking_machine();
-  const HealthVerdict verdict = machine.step([](Evidence& e) { e.standing = fault::foreign_packets; });
+  const HealthVerdict verdict = machine.step([](FrameFindings& e) { e.standing = fault::foreign_packets; });
   EXPECT_EQ(verdict.state, State::degraded);
   EXPECT_EQ(verdict.faults, fault::foreign_packets);
   EXPECT_NE(verdict.reason.find("set `source`"), std::string::npos);
@@ -222,7 +224,7 @@ TEST(Health, NothingIsHealthyWhileItIsOpenWhichOfTwoSensorsIsMeant) {
 
 TEST(Health, AScanWithoutJointsTellsWhyTheyWereRefused) {
   Machine machine = tracking_machine();
-  const HealthVerdict verdict = machine.step([](Evidence& e) {
+  const HealthVerdict verdict = machine.step([](FrameFindings& e) {
     e.bracketed = false;
     e.joint_trouble = "luff 97.000 deg is outside";
   });
@@ -244,9 +246,9 @@ TEST(Health, ABadFrameStartsRecoveryAgain) {
 
 TEST(Health, IsAcquiringUntilTheBerthIsSearchedWhateverElseIsWrong) {
   Machine machine;
-  const auto searching = [](Evidence& e) { e.search = {1, 13, std::nullopt}; };
+  const auto searching = [](FrameFindings& e) { e.search = {1, 13, std::nullopt}; };
   for (const Case& c : cases()) {
-    const HealthVerdict verdict = machine.step([&](Evidence& e) {
+    const HealthVerdict verdict = machine.step([&](FrameFindings& e) {
       searching(e);
       c.change(e);
     });
@@ -271,7 +273,7 @@ TEST(Health, ABerthThatIsSearchedAtOnceStillAsksForRecoverFrames) {
 TEST(Health, AJumpWhileUniqueTakesHealthUntilThePoseIsBackWhereItCameFrom) {
   Machine machine = tracking_machine();
   for (int i = 0; i < 5; ++i) {
-    const HealthVerdict verdict = machine.step([](Evidence& e) { e.displacement.x() = 0.9; });
+    const HealthVerdict verdict = machine.step([](FrameFindings& e) { e.displacement.x() = 0.9; });
     EXPECT_EQ(verdict.state, State::degraded);
     EXPECT_EQ(verdict.faults, fault::implausible);
     EXPECT_TRUE(machine.memory.track.unique);
@@ -281,14 +283,14 @@ TEST(Health, AJumpWhileUniqueTakesHealthUntilThePoseIsBackWhereItCameFrom) {
 }
 
 TEST(Health, ReacquireForgetsTheLastPoseAndStartsTheSearch) {
-  const auto far_away = [](Evidence& e) { e.displacement.x() = 8.0; };
+  const auto far_away = [](FrameFindings& e) { e.displacement.x() = 8.0; };
   Machine machine = tracking_machine();
   EXPECT_EQ(machine.step(far_away).state, State::degraded) << "a jump";
-  const auto searching = [&](Evidence& e) {
+  const auto searching = [&](FrameFindings& e) {
     far_away(e);
     e.search = {4, 13, std::nullopt};
   };
-  const HealthVerdict edge = machine.step([&](Evidence& e) {
+  const HealthVerdict edge = machine.step([&](FrameFindings& e) {
     searching(e);
     e.reacquire = true;
   });
@@ -305,7 +307,9 @@ TEST(Health, ReacquireForgetsTheLastPoseAndStartsTheSearch) {
 constexpr int kFramesOutOfSight = 16;
 
 TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
-  const auto elsewhere = [](Evidence& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; };
+  const auto elsewhere = [](FrameFindings& e) {
+    e.integrity = {.faults = fault::contradicted, .reason = "off"};
+  };
   Machine brief = tracking_machine();
   for (int i = 0; i < 13; ++i) {
     EXPECT_EQ(brief.step(elsewhere).faults, fault::contradicted);
@@ -319,7 +323,7 @@ TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
   }
   EXPECT_FALSE(machine.memory.track.unique);
   for (int i = 0; i < 100; ++i) {
-    const HealthVerdict verdict = machine.step([](Evidence& e) { e.search = {7, 13, std::nullopt}; });
+    const HealthVerdict verdict = machine.step([](FrameFindings& e) { e.search = {7, 13, std::nullopt}; });
     ASSERT_EQ(verdict.state, State::acquiring) << i;
   }
   EXPECT_EQ(machine.step().state, State::tracking) << "searched through, and no rival";
@@ -327,9 +331,9 @@ TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
 
 TEST(Health, ARivalKeepsHealthAwayAndSaysWhere) {
   Machine machine = tracking_machine();
-  const auto rivalled = [](Evidence& e) { e.search = {13, 13, Eigen::Vector3d(23.0, 0.1, -0.2)}; };
+  const auto rivalled = [](FrameFindings& e) { e.search = {13, 13, Eigen::Vector3d(23.0, 0.1, -0.2)}; };
   EXPECT_EQ(machine.step(rivalled).state, State::tracking) << "while it is followed there are none";
-  (void)machine.step([&](Evidence& e) {
+  (void)machine.step([&](FrameFindings& e) {
     rivalled(e);
     e.reacquire = true;
   });
@@ -344,8 +348,8 @@ TEST(Health, ARivalKeepsHealthAwayAndSaysWhere) {
 
 TEST(Health, WhileTheBerthIsSearchedABetterPlaceIsNoJump) {
   Machine machine;
-  (void)machine.step([](Evidence& e) { e.search = {4, 13, std::nullopt}; });
-  const HealthVerdict verdict = machine.step([](Evidence& e) {
+  (void)machine.step([](FrameFindings& e) { e.search = {4, 13, std::nullopt}; });
+  const HealthVerdict verdict = machine.step([](FrameFindings& e) {
     e.search = {8, 13, std::nullopt};
     e.displacement.x() = 9.0;
   });
@@ -356,9 +360,9 @@ TEST(Health, WhileTheBerthIsSearchedABetterPlaceIsNoJump) {
 TEST(Health, JumpMayGrowWithTheTimeSinceTheLastPoseThatWasFollowed) {
   Machine machine = tracking_machine();
   for (int i = 0; i < 10; ++i) {
-    (void)machine.step([](Evidence& e) { e.metrics.q1 = 0.3; });
+    (void)machine.step([](FrameFindings& e) { e.metrics.q1 = 0.3; });
   }
-  const auto moved = [](Evidence& e) { e.displacement.x() = 0.3; };  // in 1.1 s
+  const auto moved = [](FrameFindings& e) { e.displacement.x() = 0.3; };  // in 1.1 s
   EXPECT_EQ(machine.step(moved).faults & fault::implausible, 0);
 }
 
@@ -366,10 +370,10 @@ TEST(Health, JumpMayGrowWithTheTimeSinceTheLastPoseThatWasFollowed) {
 std::string after_a_gap(int unseen, double metres, double deg) {
   Machine machine = tracking_machine();
   for (int i = 0; i < unseen; ++i) {
-    (void)machine.step([](Evidence& e) { e.metrics.q1 = 0.3; });
+    (void)machine.step([](FrameFindings& e) { e.metrics.q1 = 0.3; });
   }
   return machine
-      .step([&](Evidence& e) {
+      .step([&](FrameFindings& e) {
         e.displacement.x() = metres;
         e.rotation = Eigen::AngleAxisd(radians(deg), Eigen::Vector3d::UnitX()).toRotationMatrix();
       })
@@ -397,8 +401,8 @@ TEST(Health, SteadySpeedAboveTheLimitTakesHealth) {
     Machine machine = tracking_machine();
     bool healthy = true;
     for (int i = 1; i <= 20; ++i) {
-      healthy =
-          machine.step([&](Evidence& e) { e.displacement.x() = speed * 0.1 * i; }).state == State::tracking;
+      healthy = machine.step([&](FrameFindings& e) { e.displacement.x() = speed * 0.1 * i; }).state ==
+                State::tracking;
     }
     EXPECT_EQ(healthy, speed < 0.3) << speed;
   }
@@ -414,7 +418,7 @@ std::vector<double> alarms(const std::function<double(double)>& x, double second
   std::vector<double> result;
   for (int i = 0; 0.1 * i < seconds; ++i) {
     const double t = first_t + 0.1 * i;
-    const HealthVerdict verdict = machine.step([&](Evidence& e) {
+    const HealthVerdict verdict = machine.step([&](FrameFindings& e) {
       e.displacement = Eigen::Vector3d(x(t) + error(random), error(random), error(random));
     });
     if (i >= 10 && (verdict.faults & fault::implausible) != 0) {
@@ -465,7 +469,7 @@ TEST(Health, TurningFasterThanTheEndsMayMoveTakesHealth) {
     Machine machine = tracking_machine();
     HealthVerdict verdict;
     for (int i = 1; i <= 20; ++i) {
-      verdict = machine.step([&](Evidence& e) {
+      verdict = machine.step([&](FrameFindings& e) {
         e.rotation =
             Eigen::AngleAxisd(radians(rate_deg) * 0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
       });
@@ -483,7 +487,7 @@ TEST(Health, RollingAsWavesDoKeepsHealth) {
   for (int i = 1; i <= 80; ++i) {  // 1 deg in 8 s: 0.8 deg/s at the most
     const double roll = radians(1.0) * std::sin(2.0 * 3.14159 * 0.1 * i / 8.0);
     EXPECT_EQ(machine
-                  .step([&](Evidence& e) {
+                  .step([&](FrameFindings& e) {
                     e.rotation = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
                   })
                   .state,
@@ -493,7 +497,7 @@ TEST(Health, RollingAsWavesDoKeepsHealth) {
 
 TEST(Health, RefusedPlcValueBetweenGoodOnesIsReportedAndCostsNothing) {
   Machine machine = tracking_machine();
-  const HealthVerdict verdict = machine.step([](Evidence& e) { e.standing = fault::plc_value; });
+  const HealthVerdict verdict = machine.step([](FrameFindings& e) { e.standing = fault::plc_value; });
   EXPECT_EQ(verdict.state, State::tracking);
   EXPECT_EQ(verdict.faults, fault::plc_value);
 }

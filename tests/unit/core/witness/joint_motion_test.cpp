@@ -177,7 +177,7 @@ TEST(JointMotion, AMachineThatStandsGivesNoVerdict) {
                 Eigen::Matrix3d::Identity());
   }
   EXPECT_EQ(witness.contradiction(), "");
-  EXPECT_EQ(witness.evidence(JointName::travel).moves, 0U);
+  EXPECT_EQ(witness.statistics(JointName::travel).moves, 0U);
 }
 
 }  // namespace

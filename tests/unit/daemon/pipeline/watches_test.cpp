@@ -31,15 +31,15 @@ PlcConfig plc(Nanoseconds heartbeat_timeout) {
 
 class LidarWatchTest : public testing::Test {
  protected:
-  Faults look(Nanoseconds t) { return watch.update(evidence, kStart + t); }
+  Faults look(Nanoseconds t) { return watch.update(counters, kStart + t); }
   void packet(Nanoseconds t) {
-    ++evidence.status.packets;
-    evidence.status.last_received = live_measurement_time(kStart + t);
+    ++counters.status.packets;
+    counters.status.last_received = live_measurement_time(kStart + t);
   }
 
   RecordingLog log;
   LidarWatch watch{boom(), 600.0, log, kStart};
-  LidarEvidence evidence;
+  LidarCounters counters;
 };
 
 TEST_F(LidarWatchTest, SilenceIsAFaultAfterTheTimeoutAndEndsWithTheNextPacket) {
@@ -56,8 +56,8 @@ TEST_F(LidarWatchTest, SilenceIsAFaultAfterTheTimeoutAndEndsWithTheNextPacket) {
 
 TEST_F(LidarWatchTest, NamesTheForeignSender) {
   packet(seconds(1));
-  evidence.foreign = 37;
-  evidence.last_foreign = "10.0.0.9:4000";
+  counters.foreign = 37;
+  counters.last_foreign = "10.0.0.9:4000";
   EXPECT_EQ(look(seconds(1)), 0) << "an event, not a standing condition";
   ASSERT_EQ(log.lines.size(), 1U);
   EXPECT_THAT(log.last(), HasSubstr("10.0.0.9:4000"));
@@ -66,15 +66,15 @@ TEST_F(LidarWatchTest, NamesTheForeignSender) {
 
 TEST_F(LidarWatchTest, NamesTwoSensorsOnOnePortAndLetsNobodySteerWhileItIsOpenWhichIsMeant) {
   packet(seconds(1));
-  evidence.two_senders = "two sensors send to UDP port 2368: 192.168.1.201 and 192.168.1.202";
-  evidence.status.packets_of_another = 3;
-  evidence.status.disputed = true;
+  counters.two_senders = "two sensors send to UDP port 2368: 192.168.1.201 and 192.168.1.202";
+  counters.status.packets_of_another = 3;
+  counters.status.disputed = true;
   EXPECT_EQ(look(seconds(1)), fault::foreign_packets);
   ASSERT_EQ(log.lines.size(), 1U);
   EXPECT_THAT(log.last(),
               HasSubstr("192.168.1.201 and 192.168.1.202; set `source` to the one that is meant"));
   EXPECT_THAT(log.last(), HasSubstr("health is 0"));
-  evidence.status.disputed = false;
+  counters.status.disputed = false;
   packet(milliseconds(1100));
   EXPECT_EQ(look(milliseconds(1100)), 0);
   EXPECT_EQ(log.lines.size(), 1U) << "once";
@@ -82,7 +82,7 @@ TEST_F(LidarWatchTest, NamesTwoSensorsOnOnePortAndLetsNobodySteerWhileItIsOpenWh
 
 TEST_F(LidarWatchTest, WhatAPacketFilterDropsIsNoOverload) {
   packet(seconds(1));
-  evidence.filtered = 12;
+  counters.filtered = 12;
   EXPECT_EQ(look(seconds(1)), 0);
   ASSERT_EQ(log.lines.size(), 1U);
   EXPECT_THAT(log.last(), HasSubstr("has kept 12 datagrams from UDP port 2368"));
@@ -90,26 +90,26 @@ TEST_F(LidarWatchTest, WhatAPacketFilterDropsIsNoOverload) {
 }
 
 TEST_F(LidarWatchTest, NamesWhatWasExpectedAndSeenFromAnotherModel) {
-  evidence.status.packets_rejected = 5;
-  evidence.last_rejection = "product 0x28 (VLP-32C) instead of 0x22";
+  counters.status.packets_rejected = 5;
+  counters.last_rejection = "product 0x28 (VLP-32C) instead of 0x22";
   EXPECT_EQ(look(seconds(1)), fault::lidar_silent) << "no packet can be used";
   ASSERT_EQ(log.lines.size(), 2U);
   EXPECT_THAT(log.last(), HasSubstr("not those of a velodyne_vlp16: product 0x28 (VLP-32C) instead of 0x22"));
 }
 
 TEST_F(LidarWatchTest, TellsThatDataAreHeldBackOnceTheSensorShouldHaveToldItsAngles) {
-  evidence.status.packets_held_back = 100;
+  counters.status.packets_held_back = 100;
   (void)look(milliseconds(100));
   for (const auto& line : log.lines) EXPECT_THAT(line.text, Not(HasSubstr("held back")));
-  evidence.status.packets_held_back = 1000;
+  counters.status.packets_held_back = 1000;
   (void)look(milliseconds(3100));
   EXPECT_THAT(log.last(), HasSubstr("its data are held back"));
   EXPECT_THAT(log.last(), HasSubstr("`information_port`"));
 }
 
 TEST_F(LidarWatchTest, TellsAtOnceThatWhatTheSensorToldOfItsAnglesContradictsItself) {
-  evidence.status.packets_held_back = 10;
-  evidence.status.angles_contradicted = true;
+  counters.status.packets_held_back = 10;
+  counters.status.angles_contradicted = true;
   (void)look(milliseconds(100));
   EXPECT_THAT(log.last(), HasSubstr("contradicts itself"));
   EXPECT_THAT(log.last(), HasSubstr("set `source`"));
@@ -117,10 +117,10 @@ TEST_F(LidarWatchTest, TellsAtOnceThatWhatTheSensorToldOfItsAnglesContradictsIts
 
 TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
   packet(seconds(1));
-  evidence.status.loss = 0.07;
-  evidence.status.rpm = 300.0;
-  evidence.status.clock_fault = true;
-  evidence.status.clock = {seconds(37), 3.1e-6, seconds(1'767'251'437), seconds(0)};
+  counters.status.loss = 0.07;
+  counters.status.rpm = 300.0;
+  counters.status.clock_fault = true;
+  counters.status.clock = {seconds(37), 3.1e-6, seconds(1'767'251'437), seconds(0)};
   EXPECT_EQ(look(seconds(1)), fault::clock);
   ASSERT_EQ(log.lines.size(), 3U);
   EXPECT_THAT(log.lines[0].text, HasSubstr("7.0 % of its packets"));
@@ -132,9 +132,9 @@ TEST_F(LidarWatchTest, TellsLossRotationRateAndClock) {
 
 TEST_F(LidarWatchTest, TellsHowAClockThatFollowsNothingIsHelped) {
   packet(seconds(1));
-  evidence.status.clock_fault = true;
-  evidence.status.clock.offset = milliseconds(-3);
-  evidence.status.clock.reference = ClockReference::none;
+  counters.status.clock_fault = true;
+  counters.status.clock.offset = milliseconds(-3);
+  counters.status.clock.reference = ClockReference::none;
   EXPECT_EQ(look(seconds(1)), fault::clock);
   EXPECT_THAT(log.last(),
               HasSubstr("its clock is 3.0 ms behind this computer's; the sensor says that it is not "
@@ -144,15 +144,15 @@ TEST_F(LidarWatchTest, TellsHowAClockThatFollowsNothingIsHelped) {
   LidarConfig config = boom();
   config.model = "ouster_os";
   LidarWatch ouster(config, 600.0, log, kStart);
-  ouster.update(evidence, kStart + seconds(1));
+  ouster.update(counters, kStart + seconds(1));
   EXPECT_THAT(log.last(), HasSubstr("Set up PTP or GPS on it and fetch its metadata JSON again"));
 }
 
 TEST_F(LidarWatchTest, TellsOfAChangedReturnModeAndOfSectorsLeftOutOnce) {
   packet(seconds(1));
-  evidence.status.return_mode = ReturnMode::dual;
-  evidence.status.return_mode_changes = 1;
-  evidence.status.field_of_view_cut = true;
+  counters.status.return_mode = ReturnMode::dual;
+  counters.status.return_mode_changes = 1;
+  counters.status.field_of_view_cut = true;
   EXPECT_EQ(look(seconds(1)), 0);
   ASSERT_EQ(log.lines.size(), 2U);
   EXPECT_THAT(log.lines[0].text, HasSubstr("LiDAR boom: its return mode was changed to dual, 1 time so far"));

@@ -8,7 +8,7 @@
 namespace hulltrack {
 
 /// Of interest while a pose does not follow from an earlier one.
-struct SearchEvidence {
+struct SearchProgress {
   std::size_t tried = 0;  // starts that have been aligned, of `starts`
   std::size_t starts = 0;
   std::optional<Eigen::Vector3d> rival;  // displacement at another place that explains the scan, m

@@ -1,4 +1,4 @@
-#include "core/map/patches.hpp"
+#include "core/map/landmarks.hpp"
 
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr float kSamePlane = 0.05F;
 // cannot tell it from the near side.
 constexpr float kBehindSurface = 0.3F;     // m
 constexpr float kBehindRadius = 0.15F;     // m
-constexpr std::size_t kFewestSurfels = 6;  // of a patch: a square metre; what is smaller is a fitting
+constexpr std::size_t kFewestSurfels = 6;  // of a landmark: a square metre; what is smaller is a fitting
 
 /// Disjoint sets of points that belong together (union-find).
 class Unions {
@@ -40,8 +40,9 @@ std::array<int, 3> tile_of(const Point& p) {
   return {tile(p.x()), tile(p.y()), tile(p.z())};
 }
 
-/// For each point the number of its patch, numbers from `next` on; kNoPatch if the patch has fewer than
-/// `fewest` points. Neighbours i, j within kConnected and in one tile belong to one patch if belong(i, j).
+/// For each point the number of its landmark, numbers from `next` on; kNoLandmark if the landmark has fewer
+/// than `fewest` points. Neighbours i, j within kConnected and in one tile belong to one landmark if
+/// belong(i, j).
 template <typename Belong>
 std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std::uint32_t& next,
                                    Belong&& belong) {
@@ -62,39 +63,39 @@ std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std:
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     ++sizes[unions.root(i)];
   }
-  std::vector<std::uint32_t> number(points.size(), Surfel::kNoPatch);
+  std::vector<std::uint32_t> number(points.size(), Surfel::kNoLandmark);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (sizes[i] >= fewest && unions.root(i) == i) {
       number[i] = next++;
     }
   }
-  std::vector<std::uint32_t> patches(points.size());
+  std::vector<std::uint32_t> landmarks(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    patches[i] = number[unions.root(i)];
+    landmarks[i] = number[unions.root(i)];
   }
-  return patches;
+  return landmarks;
 }
 
-/// Turns all normals of a patch to the side that most of its backed surfels face. The patch is backed if that
-/// majority is larger than half of all its surfels.
-void give_patches_one_side(std::vector<Surfel>& surfels, std::uint32_t patches) {
+/// Turns all normals of a landmark to the side that most of its backed surfels face. The landmark is backed
+/// if that majority is larger than half of all its surfels.
+void give_landmarks_one_side(std::vector<Surfel>& surfels, std::uint32_t landmarks) {
   struct Vote {
-    Point direction = Point::Zero();  // normal of the patch's first surfel
+    Point direction = Point::Zero();  // normal of the landmark's first surfel
     float side = 0.0F;  // backed surfels that face the direction, less those that face away from it
     float surfels = 0.0F;
   };
-  std::vector<Vote> votes(patches);
+  std::vector<Vote> votes(landmarks);
   for (const Surfel& surfel : surfels) {
-    if (surfel.patch != Surfel::kNoPatch) {
-      Vote& vote = votes[surfel.patch];
+    if (surfel.landmark != Surfel::kNoLandmark) {
+      Vote& vote = votes[surfel.landmark];
       vote.direction = vote.direction.isZero() ? surfel.normal_H : vote.direction;
       vote.surfels += 1.0F;
       vote.side += surfel.backed ? std::copysign(1.0F, vote.direction.dot(surfel.normal_H)) : 0.0F;
     }
   }
   for (Surfel& surfel : surfels) {
-    if (surfel.patch != Surfel::kNoPatch) {
-      const Vote& vote = votes[surfel.patch];
+    if (surfel.landmark != Surfel::kNoLandmark) {
+      const Vote& vote = votes[surfel.landmark];
       const float sign =
           std::copysign(1.0F, vote.direction.dot(surfel.normal_H)) * (vote.side < 0.0F ? -1.0F : 1.0F);
       surfel.normal_H *= sign;
@@ -103,32 +104,32 @@ void give_patches_one_side(std::vector<Surfel>& surfels, std::uint32_t patches) 
   }
 }
 
-std::vector<MapPatch> describe_patches(const Relief& relief, const std::vector<Surfel>& surfels,
-                                       const std::vector<RimPoint>& rims, std::uint32_t patches,
-                                       const std::vector<bool>& is_wall) {
-  std::vector<MapPatch> described(patches);
-  std::vector<float> members(patches, 0.0F);
-  const auto add = [&](std::uint32_t number, PatchKind kind, SurfaceClass faces, const Point& p) {
-    MapPatch& patch = described[number];
-    patch.kind = kind;
-    patch.faces = faces;
+std::vector<Landmark> describe_landmarks(const Relief& relief, const std::vector<Surfel>& surfels,
+                                         const std::vector<RimPoint>& rims, std::uint32_t landmarks,
+                                         const std::vector<bool>& is_wall) {
+  std::vector<Landmark> described(landmarks);
+  std::vector<float> members(landmarks, 0.0F);
+  const auto add = [&](std::uint32_t number, LandmarkKind kind, SurfaceClass faces, const Point& p) {
+    Landmark& landmark = described[number];
+    landmark.kind = kind;
+    landmark.faces = faces;
     if (faces != SurfaceClass::other) {
-      patch.place += (p[static_cast<Eigen::Index>(faces)] - patch.place) / ++members[number];
+      landmark.place += (p[static_cast<Eigen::Index>(faces)] - landmark.place) / ++members[number];
     }
-    if (patch.pit == Relief::kNoPit) {
-      patch.pit = relief.pit_near(p, kRimReach);
+    if (landmark.hold == Relief::kNoHold) {
+      landmark.hold = relief.hold_near(p, kRimReach);
     }
   };
   for (const Surfel& surfel : surfels) {
-    if (surfel.patch != Surfel::kNoPatch) {
-      const PatchKind kind = is_wall[surfel.patch] ? PatchKind::coaming_wall : PatchKind::surface;
-      add(surfel.patch, kind, surfel.surface, surfel.centre_H);
+    if (surfel.landmark != Surfel::kNoLandmark) {
+      const LandmarkKind kind = is_wall[surfel.landmark] ? LandmarkKind::coaming_wall : LandmarkKind::surface;
+      add(surfel.landmark, kind, surfel.surface, surfel.centre_H);
     }
   }
   for (const RimPoint& rim : rims) {
-    if (rim.patch != Surfel::kNoPatch) {
+    if (rim.landmark != Surfel::kNoLandmark) {
       const bool along_x = std::abs(rim.across_H.x()) > std::abs(rim.across_H.y());
-      add(rim.patch, PatchKind::rim, along_x ? SurfaceClass::transverse : SurfaceClass::longitudinal,
+      add(rim.landmark, LandmarkKind::rim, along_x ? SurfaceClass::transverse : SurfaceClass::longitudinal,
           rim.p_H);
     }
   }
@@ -151,15 +152,15 @@ void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel
   }
 }
 
-std::vector<MapPatch> number_patches(const Cloud& points_H, const KdTree& map, const Relief& relief,
+std::vector<Landmark> find_landmarks(const Cloud& points_H, const KdTree& map, const Relief& relief,
                                      std::vector<Surfel>& surfels, std::vector<RimPoint>& rims) {
-  std::uint32_t patches = 0;
+  std::uint32_t landmarks = 0;
   Cloud points;
   Cloud normals;
   std::vector<std::uint32_t> of;
   for (std::uint32_t i = 0; i < points_H.size(); ++i) {
     Surfel& surfel = surfels[i];
-    surfel.movable = relief.under_covers_place(points_H[i]) || relief.in_pit(points_H[i]);
+    surfel.movable = relief.under_covers_place(points_H[i]) || relief.in_hold(points_H[i]);
     if (surfel.planar && !surfel.movable) {
       points.push_back(points_H[i]);
       normals.push_back(surfel.normal_H);
@@ -167,30 +168,30 @@ std::vector<MapPatch> number_patches(const Cloud& points_H, const KdTree& map, c
     }
   }
   const std::vector<std::uint32_t> flat =
-      cluster(points, kFewestSurfels, patches, [&](std::uint32_t i, std::uint32_t j) {
+      cluster(points, kFewestSurfels, landmarks, [&](std::uint32_t i, std::uint32_t j) {
         const Point d = points[j] - points[i];
         return std::abs(normals[i].dot(normals[j])) > kSameDirection &&
                std::abs(normals[i].dot(d)) < kSamePlane && std::abs(normals[j].dot(d)) < kSamePlane;
       });
   for (std::size_t i = 0; i < of.size(); ++i) {
-    surfels[of[i]].patch = flat[i];
+    surfels[of[i]].landmark = flat[i];
   }
-  give_patches_one_side(surfels, patches);
+  give_landmarks_one_side(surfels, landmarks);
   points.clear();
   for (const RimPoint& rim : rims) {
     points.push_back(rim.p_H);
   }
   const std::vector<std::uint32_t> narrow =
-      cluster(points, kFewestRimPoints, patches, [&](std::uint32_t i, std::uint32_t j) {
+      cluster(points, kFewestRimPoints, landmarks, [&](std::uint32_t i, std::uint32_t j) {
         return rims[i].across_H.dot(rims[j].across_H) > kSameDirection &&
                std::abs(points[j].z() - points[i].z()) < kSamePlane;
       });
   for (std::size_t i = 0; i < rims.size(); ++i) {
-    rims[i].patch = narrow[i];
+    rims[i].landmark = narrow[i];
   }
   measure_rims(map, rims);
-  const std::vector<bool> is_wall = find_coaming_walls(rims, patches, surfels);
-  return describe_patches(relief, surfels, rims, patches, is_wall);
+  const std::vector<bool> is_wall = find_coaming_walls(rims, landmarks, surfels);
+  return describe_landmarks(relief, surfels, rims, landmarks, is_wall);
 }
 
 }  // namespace hulltrack

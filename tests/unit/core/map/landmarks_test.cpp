@@ -1,6 +1,6 @@
 // A hatch written by hand: a deck with a hold in it, a coaming of 0.3 m breadth around, a locker beside it,
 // covers folded on one end.
-#include "core/map/patches.hpp"
+#include "core/map/landmarks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -81,12 +81,12 @@ class Hatch : public testing::Test {
   }
 };
 
-TEST_F(Hatch, TheHoldIsAPitAndTheDeckIsNot) {
-  EXPECT_TRUE(relief().in_pit({0.0F, 0.0F, kFloor}));
-  EXPECT_TRUE(relief().in_pit({4.0F, -3.0F, -2.0F})) << "cargo's place";
-  EXPECT_FALSE(relief().in_pit({0.0F, 0.0F, 0.5F})) << "less than 2 m below the rim";
-  EXPECT_FALSE(relief().in_pit({0.0F, 7.0F, 0.0F}));
-  EXPECT_FALSE(relief().in_pit({12.0F, 0.0F, 0.0F}));
+TEST_F(Hatch, TheHoldIsFoundAndTheDeckIsNoHold) {
+  EXPECT_TRUE(relief().in_hold({0.0F, 0.0F, kFloor}));
+  EXPECT_TRUE(relief().in_hold({4.0F, -3.0F, -2.0F})) << "cargo's place";
+  EXPECT_FALSE(relief().in_hold({0.0F, 0.0F, 0.5F})) << "less than 2 m below the rim";
+  EXPECT_FALSE(relief().in_hold({0.0F, 7.0F, 0.0F}));
+  EXPECT_FALSE(relief().in_hold({12.0F, 0.0F, 0.0F}));
 }
 
 TEST_F(Hatch, AboveTheRimIsTheCoversPlace) {
@@ -96,7 +96,7 @@ TEST_F(Hatch, AboveTheRimIsTheCoversPlace) {
   EXPECT_FALSE(relief().in_covers_place({0.0F, kHalfWidth + 3.5F, kTop + 1.0F})) << "too far aside";
 }
 
-TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoPatch) {
+TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoLandmark) {
   int movable = 0;
   for (std::size_t i = 0; i < map().subset_H().size(); ++i) {
     const Point& p = map().subset_H()[i];
@@ -108,7 +108,7 @@ TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoPatch) {
     const bool cover = p.z() > kTop + 0.3F || (from_cover < 0.1F && std::abs(p.y()) < kHalfWidth);
     if (hold || cover) {
       EXPECT_TRUE(surfel.movable) << p.transpose();
-      EXPECT_EQ(surfel.patch, Surfel::kNoPatch) << p.transpose();
+      EXPECT_EQ(surfel.landmark, Surfel::kNoLandmark) << p.transpose();
       ++movable;
     } else if (!beside_cover && p.z() > kTop - Relief::kDepth + 0.1F && p.z() < kTop + 0.1F) {
       EXPECT_FALSE(surfel.movable) << p.transpose();
@@ -120,7 +120,7 @@ TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoPatch) {
 TEST_F(Hatch, RimsLieOnTheCoamingsMiddleAndKnowItsEdges) {
   std::array<int, 4> sides{};
   for (const RimPoint& rim : map().rims()) {
-    if (rim.patch == Surfel::kNoPatch) {
+    if (rim.landmark == Surfel::kNoLandmark) {
       continue;
     }
     EXPECT_NEAR(outside(rim.p_H.x(), rim.p_H.y()), 0.5F * kBreadth, 0.05F) << rim.p_H.transpose();
@@ -140,36 +140,36 @@ TEST_F(Hatch, RimsLieOnTheCoamingsMiddleAndKnowItsEdges) {
   }
 }
 
-TEST_F(Hatch, APatchFacesOneWayAndIsNotLargerThanATile) {
-  std::vector<int> members(map().patches().size(), 0);
-  std::vector<SurfaceClass> faces(map().patches().size(), SurfaceClass::other);
-  std::vector<bool> of_rim(map().patches().size(), false);
-  std::vector<Box> boxes(map().patches().size());
-  const auto add = [&](std::uint32_t patch, const Point& p_H) {
-    ASSERT_LT(patch, map().patches().size());
-    Box& box = boxes[patch];
-    box = members[patch]++ == 0 ? Box{p_H, p_H} : Box{box.min.cwiseMin(p_H), box.max.cwiseMax(p_H)};
+TEST_F(Hatch, ALandmarkFacesOneWayAndIsNotLargerThanATile) {
+  std::vector<int> members(map().landmarks().size(), 0);
+  std::vector<SurfaceClass> faces(map().landmarks().size(), SurfaceClass::other);
+  std::vector<bool> of_rim(map().landmarks().size(), false);
+  std::vector<Box> boxes(map().landmarks().size());
+  const auto add = [&](std::uint32_t landmark, const Point& p_H) {
+    ASSERT_LT(landmark, map().landmarks().size());
+    Box& box = boxes[landmark];
+    box = members[landmark]++ == 0 ? Box{p_H, p_H} : Box{box.min.cwiseMin(p_H), box.max.cwiseMax(p_H)};
   };
   for (const RimPoint& rim : map().rims()) {
-    if (rim.patch != Surfel::kNoPatch) {
-      add(rim.patch, rim.p_H);
-      of_rim[rim.patch] = true;
+    if (rim.landmark != Surfel::kNoLandmark) {
+      add(rim.landmark, rim.p_H);
+      of_rim[rim.landmark] = true;
     }
   }
   for (std::size_t i = 0; i < map().surfels().size(); ++i) {
     const Surfel& surfel = map().surfels()[i];
-    if (surfel.patch != Surfel::kNoPatch) {
+    if (surfel.landmark != Surfel::kNoLandmark) {
       EXPECT_TRUE(surfel.planar);
-      EXPECT_FALSE(of_rim[surfel.patch]) << "a rim's points are finer than surfels and apart from them";
-      EXPECT_TRUE(members[surfel.patch] == 0 || faces[surfel.patch] == surfel.surface);
-      faces[surfel.patch] = surfel.surface;
-      add(surfel.patch, map().subset_H()[i]);
+      EXPECT_FALSE(of_rim[surfel.landmark]) << "a rim's points are finer than surfels and apart from them";
+      EXPECT_TRUE(members[surfel.landmark] == 0 || faces[surfel.landmark] == surfel.surface);
+      faces[surfel.landmark] = surfel.surface;
+      add(surfel.landmark, map().subset_H()[i]);
     }
   }
-  EXPECT_GT(map().patches().size(), 20U);
-  for (std::size_t patch = 0; patch < map().patches().size(); ++patch) {
-    EXPECT_EQ(of_rim[patch], map().patches()[patch].kind == PatchKind::rim) << patch;
-    EXPECT_LE((boxes[patch].max - boxes[patch].min).maxCoeff(), kTile + 0.01F) << patch;
+  EXPECT_GT(map().landmarks().size(), 20U);
+  for (std::size_t landmark = 0; landmark < map().landmarks().size(); ++landmark) {
+    EXPECT_EQ(of_rim[landmark], map().landmarks()[landmark].kind == LandmarkKind::rim) << landmark;
+    EXPECT_LE((boxes[landmark].max - boxes[landmark].min).maxCoeff(), kTile + 0.01F) << landmark;
   }
 }
 
@@ -187,14 +187,14 @@ TEST_F(Hatch, TheWallsUnderARimsEdgesAreTheCoamingsAndNothingElseIs) {
   for (std::size_t i = 0; i < map().subset_H().size(); ++i) {
     const Point& p = map().subset_H()[i];
     const Surfel& surfel = map().surfels()[i];
-    if (surfel.patch == Surfel::kNoPatch) {
+    if (surfel.landmark == Surfel::kNoLandmark) {
       continue;
     }
     const bool level = surfel.surface == SurfaceClass::horizontal;
     const float out = outside(p.x(), p.y());
     const bool inner = std::abs(out) < 0.1F;
     const bool outer = std::abs(out - kBreadth) < 0.1F && p.z() > 0.0F;
-    const bool of_coaming = map().patches()[surfel.patch].kind == PatchKind::coaming_wall;
+    const bool of_coaming = map().landmarks()[surfel.landmark].kind == LandmarkKind::coaming_wall;
     EXPECT_TRUE(!of_coaming || (!level && (inner || outer))) << p.transpose();
     if (of_coaming) {
       EXPECT_TRUE(surfel.backed);

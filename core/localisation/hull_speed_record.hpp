@@ -12,9 +12,14 @@
 
 namespace hulltrack {
 
+struct HullSpeed {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s
+  Eigen::Vector3d rpy_rate = Eigen::Vector3d::Zero();  // rad/s
+};
+
 /// A straight line would give the speed in the middle of the window: for a ship that sets off, the speed of
 /// half a window ago. A parabola gives the speed at the newest pose, exactly if the acceleration is steady.
-class MotionRecord {
+class HullSpeedRecord {
  public:
   /// The record holds the poses of this last stretch of time, 16 at 10 Hz.
   /// Noise: if each pose has noise s, the speed has a sigma of s * 2.0 Hz: 6 mm/s for 3 mm, and 25 mm/s for
@@ -29,11 +34,6 @@ class MotionRecord {
   static constexpr std::size_t kFewest = 4;
   static constexpr Nanoseconds kShortest = std::chrono::milliseconds(300);
 
-  struct Motion {
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s
-    Eigen::Vector3d rpy_rate = Eigen::Vector3d::Zero();  // rad/s
-  };
-
   /// A pose that is not later than the last one, or comes after a gap, begins the record anew. Angles stay
   /// far from +-180 deg.
   void add(MeasurementTime time, const Eigen::Vector3d& position, const Eigen::Vector3d& rpy) {
@@ -46,8 +46,8 @@ class MotionRecord {
     }
   }
 
-  /// The motion at the time of the last pose; nothing while fewer than kFewest poses or less than kShortest.
-  [[nodiscard]] std::optional<Motion> motion() const {
+  /// The speed at the time of the last pose; nothing while fewer than kFewest poses or less than kShortest.
+  [[nodiscard]] std::optional<HullSpeed> speed() const {
     if (poses_.size() < kFewest || poses_.back().time - poses_.front().time < kShortest) {
       return std::nullopt;
     }
@@ -76,7 +76,7 @@ class MotionRecord {
     }
     const double last_t = since_first(poses_.back()) - mean_t;
     const Vector6 rate = tp / tt + (2.0 * last_t - ttt / tt) * qp / (qq + kBentByNoise);
-    return Motion{rate.head<3>(), rate.tail<3>()};
+    return HullSpeed{rate.head<3>(), rate.tail<3>()};
   }
 
  private:

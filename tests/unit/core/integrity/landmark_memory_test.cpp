@@ -1,6 +1,6 @@
-// What many noisy looks at one patch come to; the looks are drawn here, the answers follow from the law's
+// What many noisy looks at one landmark come to; the looks are drawn here, the answers follow from the law's
 // words.
-#include "core/integrity/patch_evidence.hpp"
+#include "core/integrity/landmark_memory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,99 +14,100 @@ namespace {
 
 constexpr double kNoise = 0.03;  // m, of one return: the worst of our sensors
 
-std::vector<MapPatch> one(PatchKind kind) { return {{.kind = kind}}; }
+std::vector<Landmark> one(LandmarkKind kind) { return {{.kind = kind}}; }
 
-class OnePatch : public testing::Test {
+class OneLandmark : public testing::Test {
  protected:
-  OnePatch() { evidence.reset(one(PatchKind::surface)); }
+  OneLandmark() { memory.reset(one(LandmarkKind::surface)); }
 
   /// `n` returns of one frame from a surface `offset` off the mapped one.
   void see(double offset, int n) {
     std::normal_distribution<double> noise(offset, kNoise);
     for (int i = 0; i < n; ++i) {
-      evidence.add_offset(0, noise(random), 1.0);
+      memory.add_offset(0, noise(random), 1.0);
     }
   }
-  PatchState state() { return evidence.judge(0).state; }
+  LandmarkState state() { return memory.judge(0).state; }
 
   std::mt19937 random{7};
-  PatchEvidence evidence;
+  LandmarkMemory memory;
 };
 
-TEST_F(OnePatch, TenCentimetresOffIsDisplacedAndTwoAreNot) {
+TEST_F(OneLandmark, TenCentimetresOffIsDisplacedAndTwoAreNot) {
   for (const double offset : {-0.30, -0.10, -0.02, 0.0, 0.02, 0.10, 0.30}) {
-    evidence.reset(one(PatchKind::surface));
-    evidence.begin_frame();
+    memory.reset(one(LandmarkKind::surface));
+    memory.begin_frame();
     see(offset, 60);
-    EXPECT_EQ(state(), std::abs(offset) > 0.05 ? PatchState::displaced : PatchState::in_place) << offset;
-    EXPECT_NEAR(evidence.judge(0).offset, offset, 4.0 * 1.25 * kNoise / std::sqrt(60.0));
+    EXPECT_EQ(state(), std::abs(offset) > 0.05 ? LandmarkState::displaced : LandmarkState::in_place)
+        << offset;
+    EXPECT_NEAR(memory.judge(0).offset, offset, 4.0 * 1.25 * kNoise / std::sqrt(60.0));
   }
 }
 
-TEST_F(OnePatch, AFewReturnsSayNothing) {
-  evidence.begin_frame();
+TEST_F(OneLandmark, AFewReturnsSayNothing) {
+  memory.begin_frame();
   see(0.2, 5);
-  EXPECT_EQ(state(), PatchState::unknown);
+  EXPECT_EQ(state(), LandmarkState::unknown);
 }
 
-TEST_F(OnePatch, ACoverThatIsGoneIsNotDisplaced) {
-  evidence.begin_frame();
+TEST_F(OneLandmark, ACoverThatIsGoneIsNotDisplaced) {
+  memory.begin_frame();
   see(-0.3, 30);  // the coaming that it lay on
   for (int i = 0; i < 30; ++i) {
-    evidence.add_through(0);
+    memory.add_through(0);
   }
-  EXPECT_EQ(state(), PatchState::gone);
+  EXPECT_EQ(state(), LandmarkState::gone);
 }
 
-TEST_F(OnePatch, CargoAgainstAWallIsNotDisplaced) {
-  evidence.begin_frame();
+TEST_F(OneLandmark, CargoAgainstAWallIsNotDisplaced) {
+  memory.begin_frame();
   std::uniform_real_distribution<double> slope(0.0, 0.5);
   for (int i = 0; i < 100; ++i) {
-    evidence.add_offset(0, slope(random), 1.0);
+    memory.add_offset(0, slope(random), 1.0);
   }
-  EXPECT_EQ(state(), PatchState::scattered);
+  EXPECT_EQ(state(), LandmarkState::scattered);
 }
 
-TEST_F(OnePatch, ARimThatIsHigherIsDisplacedUnlessItGoesOnOverTheHold) {
+TEST_F(OneLandmark, ARimThatIsHigherIsDisplacedUnlessItGoesOnOverTheHold) {
   for (const bool goes_on : {false, true}) {
-    evidence.reset(one(PatchKind::surface));
-    evidence.begin_frame();
+    memory.reset(one(LandmarkKind::surface));
+    memory.begin_frame();
     see(0.25, 40);
     for (int i = 0; i < 20; ++i) {
-      evidence.add_beside(0, goes_on);
+      memory.add_beside(0, goes_on);
     }
-    EXPECT_EQ(state(), goes_on ? PatchState::covered : PatchState::displaced);
+    EXPECT_EQ(state(), goes_on ? LandmarkState::covered : LandmarkState::displaced);
   }
 }
 
-TEST_F(OnePatch, DisplacedOnceIsRememberedUntilSeenInPlace) {
-  evidence.begin_frame();
+TEST_F(OneLandmark, DisplacedOnceIsRememberedUntilSeenInPlace) {
+  memory.begin_frame();
   see(0.15, 60);
-  EXPECT_EQ(evidence.report().displaced, 1U);
-  evidence.begin_frame();  // out of sight
-  EXPECT_EQ(evidence.report().displaced, 1U);
+  EXPECT_EQ(memory.report().displaced, 1U);
+  memory.begin_frame();  // out of sight
+  EXPECT_EQ(memory.report().displaced, 1U);
   for (int frame = 0; frame < 20; ++frame) {
-    evidence.begin_frame();
+    memory.begin_frame();
     see(0.0, 60);
-    (void)evidence.report();
+    (void)memory.report();
   }
-  EXPECT_EQ(evidence.report().displaced, 0U) << "what was seen long ago is forgotten as new returns come";
+  EXPECT_EQ(memory.report().displaced, 0U) << "what was seen long ago is forgotten as new returns come";
 }
 
-class OneRim : public OnePatch {
+class OneRim : public OneLandmark {
  protected:
   OneRim() { forget(); }
-  void forget() { evidence.reset(one(PatchKind::rim)); }
+  void forget() { memory.reset(one(LandmarkKind::rim)); }
   /// A frame of rays over a coaming's top that stands `aside` of its place across, at its mapped height.
   void see_strip(float aside, int n) {
-    evidence.begin_frame();
+    memory.begin_frame();
     see(0.0, n / 2);
-    std::uniform_real_distribution<float> across(-StripEvidence::kAside, StripEvidence::kAside);
+    std::uniform_real_distribution<float> across(-RimMemory::kAside, RimMemory::kAside);
     std::normal_distribution<float> blur(0.0F, 0.015F);
     for (int i = 0; i < n; ++i) {
       const float s = across(random);
       const float hit = s + blur(random) - aside;
-      evidence.add_across(rim, s, hit > rim.begin && hit < rim.end);
+      memory.add_across(rim, s, hit > rim.begin && hit < rim.end);
     }
   }
 
@@ -115,75 +116,75 @@ class OneRim : public OnePatch {
 
 TEST_F(OneRim, AsideByADecimetreIsADisplacedRimThoughItsHeightIsRight) {
   see_strip(0.0F, 300);
-  PatchReport report = evidence.report();
+  LandmarkReport report = memory.report();
   EXPECT_EQ(report.displaced, 0U);
   EXPECT_EQ(report.displaced_rims, 0U);
   EXPECT_EQ(report.solid, 1U);
-  EXPECT_TRUE(evidence.judge_strip(0).in_place());
+  EXPECT_TRUE(memory.judge_rim(0).in_place());
 
   forget();
-  EXPECT_FALSE(evidence.judge_strip(0).known) << "forgotten";
+  EXPECT_FALSE(memory.judge_rim(0).known) << "forgotten";
   see_strip(0.12F, 300);
-  report = evidence.report();
-  EXPECT_EQ(state(), PatchState::in_place);
+  report = memory.report();
+  EXPECT_EQ(state(), LandmarkState::in_place);
   EXPECT_EQ(report.displaced, 1U);
   EXPECT_EQ(report.displaced_rims, 1U);
   EXPECT_EQ(report.solid, 1U);
   EXPECT_NEAR(report.median_offset, 0.12, 0.02);
-  EXPECT_NEAR(evidence.judge_strip(0).shift, 0.12, 0.02);
+  EXPECT_NEAR(memory.judge_rim(0).shift, 0.12, 0.02);
 }
 
 TEST_F(OneRim, AsideOnceIsRememberedUntilSeenInPlace) {
   see_strip(-0.12F, 300);
-  EXPECT_EQ(evidence.report().displaced_rims, 1U);
-  evidence.begin_frame();  // out of sight
-  EXPECT_EQ(evidence.report().displaced_rims, 1U);
+  EXPECT_EQ(memory.report().displaced_rims, 1U);
+  memory.begin_frame();  // out of sight
+  EXPECT_EQ(memory.report().displaced_rims, 1U);
   for (int frame = 0; frame < 30; ++frame) {
     see_strip(0.0F, 100);
-    (void)evidence.report();
+    (void)memory.report();
   }
-  EXPECT_EQ(evidence.report().displaced_rims, 0U);
+  EXPECT_EQ(memory.report().displaced_rims, 0U);
 }
 
 TEST_F(OneRim, GoneFromItsPlaceItStandsElsewhere) {
-  evidence.begin_frame();
+  memory.begin_frame();
   see(0.0, 10);
   for (int i = 0; i < 40; ++i) {
-    evidence.add_through(0);
+    memory.add_through(0);
   }
-  EXPECT_EQ(state(), PatchState::gone);
-  PatchReport report = evidence.report();
+  EXPECT_EQ(state(), LandmarkState::gone);
+  LandmarkReport report = memory.report();
   EXPECT_EQ(report.displaced, 1U);
   EXPECT_EQ(report.displaced_rims, 1U);
   EXPECT_EQ(report.median_offset, 0.0) << "nobody knows where";
   for (int frame = 0; frame < 20; ++frame) {
-    evidence.begin_frame();
+    memory.begin_frame();
     see(0.0, 60);
-    report = evidence.report();
+    report = memory.report();
   }
   EXPECT_EQ(report.displaced, 0U);
 }
 
-class OneWall : public OnePatch {
+class OneWall : public OneLandmark {
  protected:
   OneWall() { forget(); }
-  void forget() { evidence.reset(one(PatchKind::coaming_wall)); }
+  void forget() { memory.reset(one(LandmarkKind::coaming_wall)); }
   /// A frame of rays at a coaming's wall that ended `offset` off its place, and of others over its top.
-  PatchReport look(double offset, int n, int over) {
-    evidence.begin_frame();
+  LandmarkReport look(double offset, int n, int over) {
+    memory.begin_frame();
     see(offset, n);
     for (int i = 0; i < over; ++i) {
-      evidence.add_through(0);
+      memory.add_through(0);
     }
-    return evidence.report();
+    return memory.report();
   }
 };
 
 TEST_F(OneWall, BehindItsPlaceItIsSetBackHoweverManyRaysPassItsTop) {
   for (const auto& [n, over] : {std::pair{60, 0}, {45, 15}, {30, 30}, {0, 60}}) {
     forget();
-    const PatchReport report = look(-0.3, n, over);
-    EXPECT_EQ(state(), PatchState::set_back) << n << " and " << over;
+    const LandmarkReport report = look(-0.3, n, over);
+    EXPECT_EQ(state(), LandmarkState::set_back) << n << " and " << over;
     EXPECT_EQ(report.set_back, 1U);
     EXPECT_EQ(report.displaced, 1U);
     EXPECT_EQ(report.displaced_rims, 0U);
@@ -193,8 +194,8 @@ TEST_F(OneWall, BehindItsPlaceItIsSetBackHoweverManyRaysPassItsTop) {
 }
 
 TEST_F(OneWall, BeforeItsPlaceSomethingMayStand) {
-  const PatchReport report = look(0.3, 60, 0);
-  EXPECT_EQ(state(), PatchState::displaced);
+  const LandmarkReport report = look(0.3, 60, 0);
+  EXPECT_EQ(state(), LandmarkState::displaced);
   EXPECT_EQ(report.set_back, 0U);
 }
 
@@ -205,23 +206,23 @@ TEST_F(OneWall, NeitherItsNoiseNorItsEdgesSetItBack) {
   }
   forget();
   EXPECT_EQ(look(0.0, 60, 40).set_back, 0U);
-  EXPECT_EQ(state(), PatchState::scattered) << "two in five pass its edges";
+  EXPECT_EQ(state(), LandmarkState::scattered) << "two in five pass its edges";
 }
 
 TEST_F(OneWall, CargoBeforeHalfOfItDoesNotHideThatTheRestIsSetBack) {
-  evidence.begin_frame();
+  memory.begin_frame();
   std::uniform_real_distribution<double> slope(0.0, 0.5);
   for (int i = 0; i < 25; ++i) {
-    evidence.add_offset(0, slope(random), 1.0);
+    memory.add_offset(0, slope(random), 1.0);
   }
   see(-0.3, 40);
-  EXPECT_EQ(state(), PatchState::set_back);
+  EXPECT_EQ(state(), LandmarkState::set_back);
 }
 
 TEST_F(OneWall, SetBackOnceIsRememberedUntilSeenInPlace) {
   EXPECT_EQ(look(-0.2, 60, 0).set_back, 1U);
   EXPECT_EQ(look(0.0, 0, 0).set_back, 1U) << "out of sight";
-  PatchReport report;
+  LandmarkReport report;
   for (int frame = 0; frame < 20; ++frame) {
     report = look(0.0, 60, 0);
   }
@@ -229,17 +230,17 @@ TEST_F(OneWall, SetBackOnceIsRememberedUntilSeenInPlace) {
   EXPECT_EQ(report.displaced, 0U);
 }
 
-TEST_F(OnePatch, BehindItsPlaceNothingButAWallOfACoamingIsSetBack) {
-  evidence.begin_frame();
+TEST_F(OneLandmark, BehindItsPlaceNothingButAWallOfACoamingIsSetBack) {
+  memory.begin_frame();
   see(-0.3, 60);
-  EXPECT_EQ(state(), PatchState::displaced);
-  EXPECT_EQ(evidence.report().set_back, 0U);
+  EXPECT_EQ(state(), LandmarkState::displaced);
+  EXPECT_EQ(memory.report().set_back, 0U);
 }
 
-TEST_F(OnePatch, ASurfaceThatIsDisplacedAndNoRimIsCountedOnce) {
-  evidence.begin_frame();
+TEST_F(OneLandmark, ASurfaceThatIsDisplacedAndNoRimIsCountedOnce) {
+  memory.begin_frame();
   see(0.15, 60);
-  const PatchReport report = evidence.report();
+  const LandmarkReport report = memory.report();
   EXPECT_EQ(report.in_view, 1U);
   EXPECT_EQ(report.judged, 1U);
   EXPECT_EQ(report.solid, 1U);
@@ -248,11 +249,11 @@ TEST_F(OnePatch, ASurfaceThatIsDisplacedAndNoRimIsCountedOnce) {
   EXPECT_NEAR(report.median_offset, 0.15, 0.02);
 }
 
-/// Six transverse walls of a hatch, pit 0, and four of a house 20 m off.
-std::vector<MapPatch> hatch_and_house() {
-  std::vector<MapPatch> mapped(10, MapPatch{.faces = SurfaceClass::transverse});
+/// Six transverse walls of a hatch, hold 0, and four of a house 20 m off.
+std::vector<Landmark> hatch_and_house() {
+  std::vector<Landmark> mapped(10, Landmark{.faces = SurfaceClass::transverse});
   for (std::size_t i = 0; i < 6; ++i) {
-    mapped[i].pit = 0;
+    mapped[i].hold = 0;
   }
   for (std::size_t i = 6; i < 10; ++i) {
     mapped[i].place = -20.0F;
@@ -262,43 +263,43 @@ std::vector<MapPatch> hatch_and_house() {
 
 class Ship : public testing::Test {
  protected:
-  explicit Ship(std::vector<MapPatch> mapped = hatch_and_house()) { evidence.reset(std::move(mapped)); }
-  /// Frames of twenty returns on each of the patches from `begin` to `end`, `offset` off their planes.
-  PatchReport look(std::uint32_t begin, std::uint32_t end, double offset = 0.0, int frames = 1) {
-    PatchReport report;
+  explicit Ship(std::vector<Landmark> mapped = hatch_and_house()) { memory.reset(std::move(mapped)); }
+  /// Frames of twenty returns on each of the landmarks from `begin` to `end`, `offset` off their planes.
+  LandmarkReport look(std::uint32_t begin, std::uint32_t end, double offset = 0.0, int frames = 1) {
+    LandmarkReport report;
     for (int frame = 0; frame < frames; ++frame) {
-      evidence.begin_frame();
-      for (std::uint32_t patch = begin; patch < end; ++patch) {
-        evidence.add_offset(patch, offset, 20.0);
+      memory.begin_frame();
+      for (std::uint32_t landmark = begin; landmark < end; ++landmark) {
+        memory.add_offset(landmark, offset, 20.0);
       }
-      report = evidence.report();
+      report = memory.report();
     }
     return report;
   }
-  PatchEvidence evidence;
+  LandmarkMemory memory;
 };
 
 TEST_F(Ship, OneHatchInViewDoesNotDecideWhereTheMapHasMore) {
   EXPECT_FALSE(look(0, 6, 0.0, 50).decided);
-  const PatchReport report = look(6, 8);
+  const LandmarkReport report = look(6, 8);
   EXPECT_EQ(report.along.in_place, 2U) << "the hatch is remembered";
-  EXPECT_FALSE(report.decided) << "two patches are in view";
+  EXPECT_FALSE(report.decided) << "two landmarks are in view";
   EXPECT_TRUE(look(0, 10).decided);
   EXPECT_TRUE(look(0, 6).decided) << "once is enough";
 }
 
 TEST_F(Ship, WhereTheMapHasOneStructureOneDecides) {
-  std::vector<MapPatch> mapped = hatch_and_house();
+  std::vector<Landmark> mapped = hatch_and_house();
   mapped.resize(6);
-  mapped.insert(mapped.end(), 4, MapPatch{.faces = SurfaceClass::transverse, .place = 1.0F, .pit = 0});
-  evidence.reset(mapped);
+  mapped.insert(mapped.end(), 4, Landmark{.faces = SurfaceClass::transverse, .place = 1.0F, .hold = 0});
+  memory.reset(mapped);
   EXPECT_TRUE(look(0, 10, 0.0, 20).decided);
 }
 
 TEST_F(Ship, WithoutATopOfACoamingInPlaceTheHatchesHeightIsNotKnown) {
-  std::vector<MapPatch> mapped = hatch_and_house();
-  mapped.push_back({.kind = PatchKind::rim, .faces = SurfaceClass::transverse, .pit = 0});
-  evidence.reset(mapped);
+  std::vector<Landmark> mapped = hatch_and_house();
+  mapped.push_back({.kind = LandmarkKind::rim, .faces = SurfaceClass::transverse, .hold = 0});
+  memory.reset(mapped);
   EXPECT_FALSE(look(0, 10, 0.0, 50).decided);
   EXPECT_EQ(look(0, 11).rims_in_place, 1U);
   EXPECT_TRUE(look(0, 11).decided);
@@ -306,64 +307,64 @@ TEST_F(Ship, WithoutATopOfACoamingInPlaceTheHatchesHeightIsNotKnown) {
 
 TEST_F(Ship, AHouseSeenInPlaceBeforeThePoseJumpedIsElsewhereSince) {
   EXPECT_EQ(look(6, 10).along.in_place, 1U);
-  evidence.put_elsewhere({0.24F, 0.0F, 0.0F});  // onto a hatch that lies 0.24 m aside of its place
-  PatchReport report = look(0, 6);
+  memory.put_elsewhere({0.24F, 0.0F, 0.0F});  // onto a hatch that lies 0.24 m aside of its place
+  LandmarkReport report = look(0, 6);
   EXPECT_EQ(report.along.in_place, 1U);
   EXPECT_EQ(report.along.displaced, 1U);
-  evidence.put_elsewhere({-0.24F, 0.0F, 0.0F});
+  memory.put_elsewhere({-0.24F, 0.0F, 0.0F});
   report = look(6, 8);
   EXPECT_EQ(report.along.in_place, 1U) << "the house, and it was never seen elsewhere";
   EXPECT_EQ(report.along.displaced, 1U) << "the hatch";
 }
 
 TEST_F(Ship, ARimThatWasInLineIsElsewhereAfterAJumpThoughItsHeightIsSeen) {
-  std::vector<MapPatch> mapped = hatch_and_house();
-  mapped[0].kind = PatchKind::rim;
-  evidence.reset(mapped);
+  std::vector<Landmark> mapped = hatch_and_house();
+  mapped[0].kind = LandmarkKind::rim;
+  memory.reset(mapped);
   const RimPoint rim{Point::Zero(), Point::UnitX(), Point::UnitX(), -0.15F, 0.15F, 0};
-  evidence.begin_frame();
+  memory.begin_frame();
   for (int i = 0; i < 100; ++i) {
     const float s = -0.295F + 0.0059F * static_cast<float>(i);
-    evidence.add_across(rim, s, std::abs(s) < 0.15F);
+    memory.add_across(rim, s, std::abs(s) < 0.15F);
   }
-  evidence.add_offset(0, 0.0, 20.0);
-  EXPECT_EQ(evidence.report().along.in_place, 1U);
-  evidence.put_elsewhere({0.24F, 0.0F, 0.0F});
-  PatchReport report = look(0, 1);
+  memory.add_offset(0, 0.0, 20.0);
+  EXPECT_EQ(memory.report().along.in_place, 1U);
+  memory.put_elsewhere({0.24F, 0.0F, 0.0F});
+  LandmarkReport report = look(0, 1);
   EXPECT_EQ(report.along.displaced, 1U);
   EXPECT_EQ(report.rims_in_place, 1U);
-  evidence.put_elsewhere({0.0F, 0.0F, 0.2F});
+  memory.put_elsewhere({0.0F, 0.0F, 0.2F});
   report = look(6, 10);
   EXPECT_EQ(report.rims_in_place, 0U) << "its height neither";
 }
 
 TEST_F(Ship, AJumpAcrossLeavesWhatStandsAlong) {
   (void)look(6, 10);
-  evidence.put_elsewhere({0.0F, 0.24F, 0.1F});
+  memory.put_elsewhere({0.0F, 0.24F, 0.1F});
   EXPECT_EQ(look(0, 6).along.in_place, 2U);
 }
 
 TEST_F(Ship, ReturnsOfBeforeAJumpAreDropped) {
   (void)look(0, 6, 0.0, 20);
-  evidence.put_elsewhere({0.24F, 0.0F, 0.0F});
+  memory.put_elsewhere({0.24F, 0.0F, 0.0F});
   EXPECT_EQ(look(0, 6, -0.24).along.displaced, 1U) << "twenty new returns";
 }
 
-TEST(PatchEvidence, TheShipIsDecidedOnWhenMostOfWhatIsInViewWasJudgedInSeveralFrames) {
-  PatchEvidence evidence;
-  evidence.reset(std::vector<MapPatch>(10));
+TEST(LandmarkMemory, TheShipIsDecidedOnWhenMostOfWhatIsInViewWasJudgedInSeveralFrames) {
+  LandmarkMemory memory;
+  memory.reset(std::vector<Landmark>(10));
   int frames = 0;
   for (bool decided = false; !decided && frames < 100; ++frames) {
-    evidence.begin_frame();
-    for (std::uint32_t patch = 0; patch < 10; ++patch) {
-      evidence.add_offset(patch, 0.0, patch < 7 ? 20.0 : 0.5);  // three are seen rarely
+    memory.begin_frame();
+    for (std::uint32_t landmark = 0; landmark < 10; ++landmark) {
+      memory.add_offset(landmark, 0.0, landmark < 7 ? 20.0 : 0.5);  // three are seen rarely
     }
-    decided = evidence.report().decided;
+    decided = memory.report().decided;
   }
   EXPECT_EQ(frames, 24) << "12 returns of the rare ones, half a return a frame";
-  evidence.reset(std::vector<MapPatch>(10));
-  evidence.begin_frame();
-  EXPECT_FALSE(evidence.report().decided);
+  memory.reset(std::vector<Landmark>(10));
+  memory.begin_frame();
+  EXPECT_FALSE(memory.report().decided);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "core/integrity/strip_evidence.hpp"
+#include "core/integrity/rim_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,26 +11,26 @@ namespace {
 // Rays that are remembered. A tenth of 400 lies within 3 cm of an edge, enough to place it to 1 cm.
 constexpr float kMemory = 400.0F;
 constexpr float kFewest = 25.0F;  // rays of each kind; with fewer nothing is known
-// A strip is in place up to this shift, displaced beyond it. Errors that it allows for: an edge is seen by a
+// A rim is in place up to this shift, displaced beyond it. Errors that it allows for: an edge is seen by a
 // beam 3 to 5 cm wide, its mean is good to 1 cm; the pose's error is taken off to 2 cm where the surfaces
 // that hold the pose are the hatches' own; the map's edges are known to half of its 5 cm voxel.
 constexpr double kDisplaced = 0.06;  // m
-// A displaced strip needs a shift that explains more contradicting rays than kFewestExplained, five sigma of
-// a count of 25, and a larger share of them than kLeastExplained: the strip has to be whole at its new place.
+// A displaced rim needs a shift that explains more contradicting rays than kFewestExplained, five sigma of
+// a count of 25, and a larger share of them than kLeastExplained: the rim has to be whole at its new place.
 constexpr double kFewestExplained = 25.0;
 constexpr double kLeastExplained = 0.7;
-constexpr float kFarthest = 0.35F;  // m: largest shift tried; farther aside another strip may be meant
+constexpr float kFarthest = 0.35F;  // m: largest shift tried; farther aside another rim may be meant
 
 }  // namespace
 
-bool StripEvidence::Finding::displaced() const {
+bool RimMemory::Finding::displaced() const {
   return known && std::abs(shift) > kDisplaced && explained > kFewestExplained &&
          explained > kLeastExplained * against;
 }
 
-bool StripEvidence::Finding::in_place() const { return known && std::abs(shift) <= kDisplaced; }
+bool RimMemory::Finding::in_place() const { return known && std::abs(shift) <= kDisplaced; }
 
-void StripEvidence::begin_frame() {
+void RimMemory::begin_frame() {
   const float total =
       std::accumulate(on_.begin(), on_.end(), 0.0F) + std::accumulate(through_.begin(), through_.end(), 0.0F);
   if (total > kMemory) {
@@ -42,14 +42,14 @@ void StripEvidence::begin_frame() {
   }
 }
 
-void StripEvidence::add(float s, bool on) {
+void RimMemory::add(float s, bool on) {
   const int bin = static_cast<int>(std::floor((s + kAside) / kBin));
   if (bin >= 0 && bin < kBins) {
     (on ? on_ : through_)[static_cast<std::size_t>(bin)] += 1.0F;
   }
 }
 
-StripEvidence::Finding StripEvidence::judge(float begin, float end) const {
+RimMemory::Finding RimMemory::judge(float begin, float end) const {
   Finding finding;
   const float on = std::accumulate(on_.begin(), on_.end(), 0.0F);
   const float through = std::accumulate(through_.begin(), through_.end(), 0.0F);

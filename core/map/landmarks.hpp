@@ -1,0 +1,42 @@
+// Pieces of a ship that prove which ship it is: flat landmarks, and pieces of the tops of its coamings.
+//
+// A landmark is a connected group of surfels on one plane, or of rim points (coaming.hpp), within a cube of
+// kTile. A hull that bends by centimetres moves so small a piece as a whole. Surfels are left out where the
+// same ship may look different on another day: in holds, where cargo lies, and where hatch covers may stand,
+// down to the deck (relief.hpp).
+// Frame H, metres. Pure functions.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/kdtree/kdtree.hpp"
+#include "core/map/coaming.hpp"
+#include "core/map/relief.hpp"
+#include "core/map/surfel.hpp"
+
+namespace hulltrack {
+
+enum class LandmarkKind : std::uint8_t { surface, coaming_wall, rim };
+
+struct Landmark {
+  LandmarkKind kind = LandmarkKind::surface;
+  SurfaceClass faces = SurfaceClass::other;  // of a rim: the direction across the rim, not of its level top
+  float place = 0.0F;                        // m: mean coordinate along the axis that it faces
+  std::uint32_t hold = Relief::kNoHold;      // hold of the hatch that it belongs to: within kRimReach of it
+};
+
+inline constexpr float kTile = 4.0F;  // m: side of the cubes at whose borders landmarks end
+
+/// Makes planar surfels Surfel::backed if the map has something close to one side of them only, and turns
+/// their normals to the free side. `surfels`: as compute_surfels() gives them; `map`: the tree over the map.
+void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel>& surfels);
+
+/// Marks movable surfels. Gives the other planar surfels and the rim points the number of their landmark.
+/// Turns the normals of a landmark to one side, measures the rims and finds the coamings' walls. Returns the
+/// landmarks by number. `points_H`: the point of each surfel.
+[[nodiscard]] std::vector<Landmark> find_landmarks(const Cloud& points_H, const KdTree& map,
+                                                   const Relief& relief, std::vector<Surfel>& surfels,
+                                                   std::vector<RimPoint>& rims);
+
+}  // namespace hulltrack
