@@ -60,9 +60,10 @@ int main(int argc, char** argv) {
   const auto track = [&] {
     for (Scan scan; scans->take(scan);) {
       const TrackResult hull = tracker.process(scan, joints, FrameInputs{});
+      const Eigen::Vector3d moved = hull.pose.displacement();
       ++frames;
       std::printf("frame %u: health %d, moved by %.3f %.3f %.3f m  %s\n", hull.frame, hull.health ? 1 : 0,
-                  hull.displacement.x(), hull.displacement.y(), hull.displacement.z(), hull.reason.c_str());
+                  moved.x(), moved.y(), moved.z(), hull.reason.c_str());
     }
   };
   for (Datagram datagram;;) {

@@ -146,8 +146,9 @@ Pose PoseFinder::followed(MeasurementTime time, const Track& track) const {
   const FollowedPose& last = *track.followed;
   const HullSpeed speed = track.speed_record.speed().value_or(HullSpeed{});
   const double dt = std::max(0.0, to_seconds(time - last.time));
-  const Eigen::Vector3d rpy = rpy_from_rotation(last.rotation) + dt * speed.rpy_rate;
-  return pose_about(hull_.reference_point, rotation_from_rpy(rpy), last.displacement + dt * speed.velocity)
+  const Eigen::Vector3d rpy = last.pose.rpy() + dt * speed.rpy_rate;
+  return pose_about(hull_.reference_point, rotation_from_rpy(rpy),
+                    last.pose.displacement() + dt * speed.velocity)
       .inverse();
 }
 
@@ -163,8 +164,8 @@ Pose PoseFinder::best_start(MeasurementTime time, const Track& track) {
   };
   if (track.followed) {
     offer(followed(time, track), 1.0);
-    offer(pose_about(hull_.reference_point, track.followed->rotation, track.followed->displacement).inverse(),
-          1.0);
+    const HullPose& last = track.followed->pose;
+    offer(pose_about(hull_.reference_point, last.rotation(), last.displacement()).inverse(), 1.0);
   }
   offer(Pose::Identity(), 1.0);
   if (challenger_) {
@@ -256,11 +257,12 @@ void PoseFinder::begin_search(MeasurementTime time) {
   Box reach = hull_.envelope;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   if (last_seen_) {
+    const HullPose& seen = last_seen_->pose;
     const double unseen = std::max(0.0, to_seconds(time - last_seen_->time));
     const double far = std::min(kFarthestUnseen, kFastestHull * unseen + kUnseen);
-    reach.min.x() = std::min(reach.min.x(), static_cast<float>(last_seen_->displacement.x() - far));
-    reach.max.x() = std::max(reach.max.x(), static_cast<float>(last_seen_->displacement.x() + far));
-    rotation = last_seen_->rotation;
+    reach.min.x() = std::min(reach.min.x(), static_cast<float>(seen.displacement().x() - far));
+    reach.max.x() = std::max(reach.max.x(), static_cast<float>(seen.displacement().x() + far));
+    rotation = seen.rotation();
   }
   search_.begin(few_W_, reach, rotation);
 }

@@ -4,10 +4,10 @@
 // Frame W; metres, radians. A plain value of bounded size.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "core/base/time.hpp"
+#include "core/geometry/hull_pose.hpp"
 #include "core/localisation/hull_speed_record.hpp"
 
 namespace hulltrack {
@@ -22,8 +22,7 @@ inline constexpr double kFastestHull = 0.6;  // m/s
 
 struct FollowedPose {
   MeasurementTime time;
-  Eigen::Vector3d displacement;  // of the reference point
-  Eigen::Matrix3d rotation;      // of T_W_H
+  HullPose pose;
 };
 
 struct Track {

@@ -39,12 +39,14 @@ struct Objections {
 
 void check_registration(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
   const auto least = static_cast<std::uint32_t>(std::max(0, limits.health.min_matched));
-  if (!e.registered || e.matched < least) {
-    objections.add(State::lost, fault::few_matches,
-                   counted(e.matched, "matched point") + format_text(", min_matched is %u", least));
+  if (!e.registration.found || e.registration.matched < least) {
+    objections.add(
+        State::lost, fault::few_matches,
+        counted(e.registration.matched, "matched point") + format_text(", min_matched is %u", least));
   }
-  if (!e.converged) {
-    objections.add(e.registered ? State::degraded : State::lost, fault::not_converged, e.trouble);
+  if (!e.registration.converged) {
+    objections.add(e.registration.found ? State::degraded : State::lost, fault::not_converged,
+                   e.registration.trouble);
   }
 }
 
@@ -84,18 +86,19 @@ void check_q1(const HealthConfig& health, double q1, Objections& objections) {
 }
 
 void check_distances(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
-  if (!e.metrics.valid) {
+  if (!e.examination.metrics.valid) {
     objections.add(State::lost, fault::q1_high, "no part of the map is in view");
     return;
   }
-  check_ratio(limits.health, e.metrics, objections);
-  check_q1(limits.health, e.metrics.q1, objections);
+  check_ratio(limits.health, e.examination.metrics, objections);
+  check_q1(limits.health, e.examination.metrics.q1, objections);
 }
 
 void check_integrity(const FrameFindings& e, Objections& objections) {
-  if (e.integrity.faults != 0) {
-    const bool contradicted = (e.integrity.faults & fault::contradicted) != 0;
-    objections.add(contradicted ? State::lost : State::degraded, e.integrity.faults, e.integrity.reason);
+  if (e.examination.integrity.faults != 0) {
+    const bool contradicted = e.contradicted();
+    objections.add(contradicted ? State::lost : State::degraded, e.examination.integrity.faults,
+                   e.examination.integrity.reason);
   }
 }
 
@@ -112,7 +115,7 @@ void check_machine(HealthMemory& memory, const FrameFindings& e, Objections& obj
 }
 
 void check_envelope(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
-  const Eigen::Vector3d& d = e.displacement;
+  const Eigen::Vector3d d = e.registration.pose.displacement();
   const bool inside =
       (d.array() >= limits.envelope_min.array()).all() && (d.array() <= limits.envelope_max.array()).all();
   if (!inside) {
@@ -127,7 +130,7 @@ void check_envelope(const HealthLimits& limits, const FrameFindings& e, Objectio
 void check_attitude(const HealthLimits& limits, const FrameFindings& e, Objections& objections) {
   static constexpr std::array<std::pair<const char*, const char*>, 3> kWords = {
       {{"heel", "max_heel"}, {"be trimmed", "max_trim"}, {"be turned", "max_yaw"}}};
-  const Eigen::Vector3d rpy = rpy_from_rotation(e.rotation);
+  const Eigen::Vector3d rpy = e.registration.pose.rpy();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (!(std::abs(rpy[axis]) <= limits.max_rpy[axis])) {
       const auto& [seems_to, key] = kWords[static_cast<std::size_t>(axis)];
@@ -153,7 +156,8 @@ void check_continuity(HealthMemory& memory, const FrameFindings& e, Objections& 
     memory.track.speed_record = HullSpeedRecord{};
     return;
   }
-  const double jump = (e.displacement - memory.track.followed->displacement).norm();
+  const double jump =
+      (e.registration.pose.displacement() - memory.track.followed->pose.displacement()).norm();
   if (!memory.track.unique && jump > reach) {  // the search found another place: no fault, no speed
     memory.track.speed_record = HullSpeedRecord{};
     return;
@@ -163,7 +167,8 @@ void check_continuity(HealthMemory& memory, const FrameFindings& e, Objections& 
         State::degraded, fault::implausible,
         format_text("pose jumped by %.2f m in %.1f s, at most %.2f m is possible", jump, dt, reach));
   }
-  const double turn = rotation_angle(memory.track.followed->rotation.transpose() * e.rotation);
+  const double turn =
+      rotation_angle(memory.track.followed->pose.rotation().transpose() * e.registration.pose.rotation());
   if (turn > kTurnRate * dt + kTurnNoise) {
     objections.add(State::degraded, fault::implausible,
                    format_text("pose turned by %.2f deg in %.1f s", degrees(turn), dt));
@@ -251,13 +256,13 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
   objections.faults = e.standing;
   check_registration(limits, e, objections);
   check_machine(memory, e, objections);
-  if (e.registered) {
+  if (e.registration.found) {
     check_distances(limits, e, objections);
     check_integrity(e, objections);
     check_continuity(memory, e, objections);
     if (objections.state != State::lost && (objections.faults & fault::implausible) == 0) {
-      memory.track.followed = FollowedPose{e.time, e.displacement, e.rotation};
-      memory.track.speed_record.add(e.time, e.displacement, rpy_from_rotation(e.rotation));
+      memory.track.followed = FollowedPose{e.time, e.registration.pose};
+      memory.track.speed_record.add(e.time, e.registration.pose.displacement(), e.registration.pose.rpy());
     }
     check_envelope(limits, e, objections);
     check_attitude(limits, e, objections);
@@ -266,8 +271,8 @@ HealthVerdict judge_pose(const HealthLimits& limits, HealthMemory& memory, const
 
   const bool a_lidar_is_silent = (e.standing & fault::lidar_silent) != 0;
   memory.good_frames = objections.state == State::tracking && !a_lidar_is_silent ? memory.good_frames + 1 : 0;
-  if (e.registered && e.integrity.undecided) {
-    objections.add(State::degraded, 0, e.integrity.reason);
+  if (e.registration.found && e.examination.integrity.undecided) {
+    objections.add(State::degraded, 0, e.examination.integrity.reason);
   }
   check_uniqueness(memory, e.search, objections);
   if (e.joints_on_trial) {  // still a good frame: health is back at once when the values prove right

@@ -25,35 +25,11 @@
 #include <utility>
 
 #include "core/base/status.hpp"
-#include "core/integrity/integrity.hpp"
-#include "core/localisation/search_progress.hpp"
 #include "core/localisation/track.hpp"
-#include "core/sight/metrics.hpp"
+#include "core/tracking/frame_findings.hpp"
 #include "core/tracking/tracker_config.hpp"
-#include "core/witness/machine_finding.hpp"
 
 namespace hulltrack {
-
-/// Everything that one frame says for or against itself.
-struct FrameFindings {
-  MeasurementTime time{};  // middle of the scan
-  bool hold = false;
-  bool reacquire = false;        // rising edge
-  Faults standing = 0;           // faults of the inputs that hold now, as in FrameInputs (hull_tracker.hpp)
-  bool bracketed = false;        // joint samples lie before and after every packet
-  bool joints_on_trial = false;  // some of these samples are not confirmed yet
-  std::string joint_trouble;     // why joint values are refused or on trial
-  bool registered = false;       // a pose was found; metrics, displacement, rotation, integrity are about it
-  bool converged = false;
-  std::uint32_t matched = 0;
-  std::string trouble;  // of the registration: why there is no pose, or why it did not converge
-  DistanceMetrics metrics;
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // of the reference point, m
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // of T_W_H
-  IntegrityFinding integrity;
-  MachineFinding machine;
-  SearchProgress search;
-};
 
 /// A hull that runs farther than this while faster than hull.max_speed has run away. The fastest jerk that a
 /// passing ship gives a moored hull does not reach as far. So the hull is under way, or an encoder stands

@@ -41,10 +41,8 @@ struct TrackResult {
   std::uint32_t frame = 0;
   MeasurementTime time{};  // middle of the scan
 
-  bool registered = false;                                 // false: members down to `metrics` mean nothing
-  Pose T_W_H = Pose::Identity();                           // hull pose found by this frame's registration
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  // T_W_H * p_ref - p_ref, m
-  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();           // of T_W_H, rad
+  bool registered = false;  // false: members down to `metrics` mean nothing
+  HullPose pose;            // found by this frame's registration
   bool converged = false;
   int iterations = 0;
   std::uint32_t matched = 0;        // points of the last ICP iteration

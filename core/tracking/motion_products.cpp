@@ -20,14 +20,14 @@ MotionGauge::MotionGauge(const Box& mapped_H)
     : middle_H_((mapped_H.min + mapped_H.max).cast<double>() / 2.0),
       mapped_length_(static_cast<double>(mapped_H.max.x() - mapped_H.min.x())) {}
 
-MotionProducts MotionGauge::update(MeasurementTime time, bool health, const Eigen::Vector3d& displacement,
-                                   const Eigen::Vector3d& rpy, const Pose& T_W_H) {
+MotionProducts MotionGauge::update(MeasurementTime time, bool health, const HullPose& pose) {
   forget(time);
   MotionProducts products;
   products.mapped_length = mapped_length_;
   if (health) {
-    const double draft = middle_H_.z() - (T_W_H * middle_H_).z();
-    entries_.push_back({time, {draft, rpy.x(), rpy.y(), displacement.x()}});
+    const double draft = middle_H_.z() - (pose.T_W_H * middle_H_).z();
+    const Eigen::Vector3d rpy = pose.rpy();
+    entries_.push_back({time, {draft, rpy.x(), rpy.y(), pose.displacement().x()}});
     products.now = as_motion(entries_.back().values);
   }
   products.rate = rate();

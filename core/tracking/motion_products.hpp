@@ -13,7 +13,7 @@
 
 #include "core/base/time.hpp"
 #include "core/geometry/box.hpp"
-#include "core/geometry/se3.hpp"
+#include "core/geometry/hull_pose.hpp"
 
 namespace hulltrack {
 
@@ -47,8 +47,7 @@ class MotionGauge {
 
   /// To be called with every frame. `displacement`: of the reference point, `rpy`: of T_W_H. Poses without
   /// health are ignored.
-  [[nodiscard]] MotionProducts update(MeasurementTime time, bool health, const Eigen::Vector3d& displacement,
-                                      const Eigen::Vector3d& rpy, const Pose& T_W_H);
+  [[nodiscard]] MotionProducts update(MeasurementTime time, bool health, const HullPose& pose);
 
  private:
   struct Entry {

@@ -11,17 +11,19 @@ Nanoseconds age_of(const TrackResult& result, SteadyTime now) {
   return now - SteadyTime{result.time.time_since_epoch()};
 }
 
-void put_pose(const TrackResult& pose, SteadyTime now, WriteBlock& block) {
-  block.frame = pose.frame;
-  block.x_m = pose.displacement.x();
-  block.y_m = pose.displacement.y();
-  block.z_m = pose.displacement.z();
-  block.roll_deg = degrees(pose.rpy.x());
-  block.pitch_deg = degrees(pose.rpy.y());
-  block.yaw_deg = degrees(pose.rpy.z());
-  block.age_ms = to_milliseconds(age_of(pose, now));
-  block.sigma_translation_m = pose.sigma_translation < 0.0 ? kUnknownSigma : pose.sigma_translation;
-  block.sigma_rotation_deg = pose.sigma_rotation < 0.0 ? kUnknownSigma : degrees(pose.sigma_rotation);
+void put_pose(const TrackResult& result, SteadyTime now, WriteBlock& block) {
+  const Eigen::Vector3d displacement = result.pose.displacement();
+  const Eigen::Vector3d rpy = result.pose.rpy();
+  block.frame = result.frame;
+  block.x_m = displacement.x();
+  block.y_m = displacement.y();
+  block.z_m = displacement.z();
+  block.roll_deg = degrees(rpy.x());
+  block.pitch_deg = degrees(rpy.y());
+  block.yaw_deg = degrees(rpy.z());
+  block.age_ms = to_milliseconds(age_of(result, now));
+  block.sigma_translation_m = result.sigma_translation < 0.0 ? kUnknownSigma : result.sigma_translation;
+  block.sigma_rotation_deg = result.sigma_rotation < 0.0 ? kUnknownSigma : degrees(result.sigma_rotation);
 }
 
 void put_metrics(const TrackResult& newest, WriteBlock& block) {

@@ -10,10 +10,10 @@ void append_pose(std::string& line, const TrackResult& r) {
     line += ",,,,,,";
     return;
   }
-  for (const double v : r.displacement) {
+  for (const double v : r.pose.displacement()) {
     append_field(line, v);
   }
-  for (const double v : r.rpy) {
+  for (const double v : r.pose.rpy()) {
     append_field(line, degrees(v));
   }
 }

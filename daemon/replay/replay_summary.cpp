@@ -84,8 +84,8 @@ void ReplaySummary::add(const TrackResult& r, double processing_ms) {
   if (const auto truth = truth_at(truth_, frame.t_ns)) {
     frame.moving = truth_speed(truth_, frame.t_ns) > max_speed_;
     if (r.registered) {
-      frame.error = (r.displacement - truth->xyz).norm();
-      frame.turn_deg = degrees(rotation_angle(rotation_of(*truth).transpose() * r.T_W_H.linear()));
+      frame.error = (r.pose.displacement() - truth->xyz).norm();
+      frame.turn_deg = degrees(rotation_angle(rotation_of(*truth).transpose() * r.pose.rotation()));
     }
   }
   frames_.push_back(frame);

@@ -69,7 +69,7 @@ struct Figures {
 void check(const FrameRecording& recording, RegistrationMethod method, const TrackResult& track,
            const WriteBlock& block) {
   const Eigen::Vector3d middle(0.0, 10.0, 2.0);
-  const double error = (track.T_W_H * middle - recording.T_W_H * middle).norm();
+  const double error = (track.pose.T_W_H * middle - recording.T_W_H * middle).norm();
   const bool believed = track.state == State::tracking && block.health;
   require(!believed || error < kWrong, "a healthy pose is wrong");
   if (!believed && track.frame >= kFramesToBelieve && method == RegistrationMethod::automatic) {

@@ -18,11 +18,10 @@ namespace {
 
 /// As if the frames so far had shown the hull at T_W_H.
 void follow(const Pose& T_W_H, MeasurementTime time, Track& track) {
-  const Eigen::Vector3d reference_H = HullConfig{}.reference_point;
-  const Eigen::Vector3d displacement = T_W_H * reference_H - reference_H;
+  const HullPose pose{T_W_H, HullConfig{}.reference_point};
   track.unique = true;
-  track.followed = {time, displacement, T_W_H.linear()};
-  track.speed_record.add(time, displacement, rpy_from_rotation(T_W_H.linear()));
+  track.followed = {time, pose};
+  track.speed_record.add(time, pose.displacement(), pose.rpy());
 }
 
 }  // namespace
@@ -33,7 +32,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
   const ScanFilter filter(config.machine, sensor_configs(config.lidars), std::nullopt);
   PoseFinder finder(config.tracker.hull, config.tracker.registration, map);
   PointToPlaneIcp icp({}, finder.bend_shape());
-  Visibility visibility(std::max(Integrity::kSight, config.tracker.health.metric_range));
+  Visibility visibility(std::max(pose_observations::kSight, config.tracker.health.metric_range));
   Integrity integrity;
   Track track;
   FilteredScan filtered;
@@ -68,7 +67,7 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     done("scan view");
     visibility.run(map, map.probes_H(), T_W_H, views, filter.sensors(), visible);
     done("visibility");
-    IntegrityReport report = integrity.run(map, visible, T_W_H, views);
+    const PoseObservations seen = observe_pose(map, visible, T_W_H, views);
     done("integrity");
     keep_within(config.tracker.health.metric_range, visible);
     require(expected_distance.q1(map, visible, T_W_H, views).has_value(), "no expected Q1");
@@ -82,10 +81,14 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     nearest_returns.run(measured_W, views, filtered, distances);
     require(summarise_distances(distances).valid, "no metrics");
     done("metrics");
-    report.step.solved = found.covariance.valid;
-    report.step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
-    integrity.weigh(map, scan.mid_time(), T_W_H, T_W_H * reference_H, finder.bend_shape(), finder.bend().d,
-                    report);
+    PlaneStep step;
+    step.solved = found.covariance.valid;
+    step.covariance_translation = finder.covariance(found.covariance).bottomRightCorner<3, 3>();
+    require(integrity
+                    .weigh(map, scan.mid_time(), {T_W_H, reference_H}, finder.bend_shape(), finder.bend().d,
+                           seen, step)
+                    .in_view > 0,
+            "no landmark in view");
     done("landmarks");
     if (const auto rival = finder.rival(found.icp.T_target_source)) {
       finder.settle(rival->start, rival->T_H_W, true);  // the scan contradicts every other place

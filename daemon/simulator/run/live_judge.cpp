@@ -13,7 +13,7 @@ std::optional<Nanoseconds> LiveJudge::departure() const {
 }
 
 LiveJudge::Offset LiveJudge::offset(const WriteBlock& block, Nanoseconds time) const {
-  const HullPose truth = berth_->truth(time - nanoseconds_from_ms(block.age_ms));
+  const ShipPose truth = berth_->truth(time - nanoseconds_from_ms(block.age_ms));
   const Eigen::Vector3d displacement(block.x_m, block.y_m, block.z_m);
   const Eigen::Vector3d rpy(radians(block.roll_deg), radians(block.pitch_deg), radians(block.yaw_deg));
   const Eigen::Matrix3d turn = rotation_from_rpy(rpy) * rotation_from_rpy(truth.rpy).transpose();
@@ -38,7 +38,7 @@ void LiveJudge::add(const WriteBlock& block, Nanoseconds time) {
 }
 
 std::string LiveJudge::ship_line(Nanoseconds time) const {
-  const HullPose truth = berth_->truth(time);
+  const ShipPose truth = berth_->truth(time);
   return format_text("%6.1f s  ship x %+.3f y %+.3f z %+.3f m", to_seconds(time), truth.displacement.x(),
                      truth.displacement.y(), truth.displacement.z());
 }

@@ -195,7 +195,7 @@ std::vector<TruthRow> recorded_truth(const SimulatedBerth& berth) {
   std::vector<TruthRow> rows;
   const Nanoseconds end = berth.frames() * SimulatedBerth::kFramePeriod + kMargin;
   for (Nanoseconds time = -kMargin; time <= end; time += kTruthPeriod) {
-    const HullPose pose = berth.truth(time);
+    const ShipPose pose = berth.truth(time);
     rows.push_back({utc_ns(time), pose.displacement, in_degrees(pose.rpy), berth.bend(time)});
   }
   return rows;

@@ -135,9 +135,9 @@ bool SimulatedBerth::plugged_in(std::size_t lidar, Nanoseconds time) const {
   return !unplugged || unplugged->lidar != lidar || !unplugged->when.active(to_seconds(time));
 }
 
-HullPose SimulatedBerth::truth(Nanoseconds time) const {
+ShipPose SimulatedBerth::truth(Nanoseconds time) const {
   const double t = to_seconds(time);
-  const HullPose straight = hull_.pose(t);
+  const ShipPose straight = hull_.pose(t);
   const double bend = this->bend(time);
   if (bend == 0.0) return straight;
   const double length = static_cast<double>(scenario_->ship_at_berth.length);

@@ -65,7 +65,7 @@ class SimulatedBerth {
 
   /// Where the reference point is and how the hull lies there: of a bent hull the tangent frame at that point
   /// of the ship.
-  [[nodiscard]] HullPose truth(Nanoseconds time) const;
+  [[nodiscard]] ShipPose truth(Nanoseconds time) const;
   /// How much the hull is bent since the map was made, see hull_shape.hpp; m.
   [[nodiscard]] double bend(Nanoseconds time) const;
   /// Of the hull as if it were not bent: where hull_mesh_H lies.

@@ -54,12 +54,12 @@ HullMotion::HullMotion(const HullMotionConfig& config, const Eigen::Vector3d& re
   for (std::size_t i = 0; i < swings.size(); ++i) waves_.at(i) = waves(swings.at(i), seed, kStream + i);
 }
 
-HullPose HullMotion::pose(double t) const {
+ShipPose HullMotion::pose(double t) const {
   std::array<double, 6> swing{};
   for (std::size_t i = 0; i < swing.size(); ++i)
     for (const Wave& wave : waves_[i])
       swing[i] += wave.amplitude * std::sin(wave.angular_frequency * t + wave.phase);
-  HullPose pose{config_.start_displacement, config_.start_rpy};
+  ShipPose pose{config_.start_displacement, config_.start_rpy};
   pose.displacement += Eigen::Vector3d(swing[0], swing[1], swing[2] - config_.draft_rate * t);
   pose.rpy += Eigen::Vector3d(swing[3], swing[4], swing[5]);
   pose.displacement.z() -= ebb(t);
@@ -73,7 +73,7 @@ HullPose HullMotion::pose(double t) const {
 
 double HullMotion::ebb(double t) const { return run_distance(config_.ebb, t); }
 
-Pose HullMotion::transform(const HullPose& pose) const {
+Pose HullMotion::transform(const ShipPose& pose) const {
   return pose_about(reference_point_H_, rotation_from_rpy(pose.rpy), pose.displacement);
 }
 

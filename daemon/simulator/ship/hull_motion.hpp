@@ -53,7 +53,7 @@ struct HullMotionConfig {
 /// When the ship first leaves her place along or off the quay; nullopt: never.
 [[nodiscard]] std::optional<double> under_way(const HullMotionConfig& motion);
 
-struct HullPose {
+struct ShipPose {
   Eigen::Vector3d displacement;  // of the reference point, m
   Eigen::Vector3d rpy;           // rad
 };
@@ -62,12 +62,12 @@ class HullMotion {
  public:
   HullMotion(const HullMotionConfig& config, const Eigen::Vector3d& reference_point_H, std::uint64_t seed);
 
-  [[nodiscard]] HullPose pose(double t) const;
+  [[nodiscard]] ShipPose pose(double t) const;
   [[nodiscard]] Pose T_W_H(double t) const;
   /// How far the water has fallen since time 0, m.
   [[nodiscard]] double ebb(double t) const;
   /// T_W_H of such a pose about the reference point.
-  [[nodiscard]] Pose transform(const HullPose& pose) const;
+  [[nodiscard]] Pose transform(const ShipPose& pose) const;
   [[nodiscard]] const HullMotionConfig& config() const { return config_; }
   [[nodiscard]] const Eigen::Vector3d& reference_point() const { return reference_point_H_; }
 

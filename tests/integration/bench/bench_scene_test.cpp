@@ -39,7 +39,7 @@ TEST(BenchScene, HullIsTrackedInFullScansWithClutter) {
       EXPECT_EQ(track.state, State::tracking) << track.frame << ": " << track.reason;
     }
     if (track.health) {
-      EXPECT_LT((track.T_W_H * amidships - recording.T_W_H * amidships).norm(), 0.02) << track.frame;
+      EXPECT_LT((track.pose.T_W_H * amidships - recording.T_W_H * amidships).norm(), 0.02) << track.frame;
     }
   });
   EXPECT_GE(frames, kFrames);

@@ -26,7 +26,7 @@ class PlcThreadTest : public testing::Test {
     frame.result.frame = static_cast<std::uint32_t>(sequence);
     frame.result.time = live_measurement_time(frame.done);
     frame.result.registered = frame.result.converged = frame.result.health = true;
-    frame.result.displacement = {0.1, 0.2, 0.3};
+    frame.result.pose.T_W_H.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
     frame.result.state = State::tracking;
     return frame;
   }

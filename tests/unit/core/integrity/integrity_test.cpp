@@ -1,4 +1,5 @@
-// Integrity::run against scenes written by hand: a corner of three walls, one ray to every surfel.
+// observe_pose() and Integrity against scenes written by hand: a corner of three walls, one ray to every
+// surfel.
 //
 // The sensor stands at the world's origin and L is W. No ray casting, no visibility, no tracker: a ray ends
 // where the test says, so that every answer follows from the definition.
@@ -50,9 +51,8 @@ class IntegrityRun : public testing::Test {
     }
     std::vector<ScanView> views(1);
     views[0].rebuild(returns, Pose::Identity());
-    IntegrityReport report = integrity.run(map, visible, T_W_H, views);
-    report.step = integrity.step(reference);
-    return report;
+    seen = observe_pose(map, visible, T_W_H, views);
+    return {seen.counts, solve_plane_step(seen.surfels, reference), {}};
   }
 
   [[nodiscard]] std::uint32_t planar(SurfaceClass surface) const {
@@ -65,6 +65,7 @@ class IntegrityRun : public testing::Test {
   }
 
   Integrity integrity;
+  PoseObservations seen;  // of the last look()
   const HullMap map;
   const Eigen::Vector3d reference{3.0, 3.0, -3.0};
 };
@@ -172,7 +173,8 @@ TEST_F(IntegrityRun, LandmarksStandWhereTheBendPutsThem) {
         return surfel.surface == SurfaceClass::horizontal ? (p.z() + 0.1F) / p.z() : 1.0F;  // 0.1 m higher
       });
       report.step = {.solved = true};
-      integrity.weigh(map, MeasurementTime{}, Pose::Identity(), reference, shape, bend, report);
+      report.landmarks = integrity.weigh(map, MeasurementTime{}, {Pose::Identity(), reference}, shape, bend,
+                                         seen, report.step);
     }
     EXPECT_GT(report.landmarks.in_view, 2U);
     return report.landmarks.displaced;
@@ -192,8 +194,8 @@ TEST_F(IntegrityRun, WhatWasSeenAtAPlaceFromWhichNoShipComesIsForgotten) {
       });
       report.step = {.solved = true};
       time += std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
-      integrity.weigh(map, time, Pose::Identity(), reference + Eigen::Vector3d(x, 0.0, 0.0), {1e3, 2e3}, 0.0,
-                      report);
+      report.landmarks = integrity.weigh(map, time, {Pose(Eigen::Translation3d(x, 0.0, 0.0)), reference},
+                                         {1e3, 2e3}, 0.0, seen, report.step);
       seconds = 0.1;
     }
     return report.landmarks.displaced;

@@ -67,7 +67,7 @@ class Finding : public ::testing::Test {
   }
   void follow(const Vector3d& displacement) {
     track.unique = true;
-    track.followed = FollowedPose{time, displacement, Eigen::Matrix3d::Identity()};
+    track.followed = FollowedPose{time, moved_hull(displacement, Eigen::Matrix3d::Identity(), kReference)};
   }
   static double error(const Pose& T_W_H, const Vector3d& displacement) {
     return (T_W_H * kReference - kReference - displacement).norm();

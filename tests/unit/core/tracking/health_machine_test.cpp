@@ -31,11 +31,11 @@ class Frames {
   HealthVerdict step(const Pose& T_W_H, bool reacquire) {
     FrameFindings e;
     e.time = MeasurementTime{frame_++ * milliseconds(100)};
-    e.bracketed = e.registered = e.converged = true;
-    e.matched = 1000;
-    e.metrics = {true, 0.08, 0.1, 0.1, 0.12, 0.1, 3000, 0.08};
-    e.displacement = T_W_H.translation();
-    e.rotation = T_W_H.linear();
+    e.bracketed = e.registration.found = e.registration.converged = true;
+    e.registration.matched = 1000;
+    e.examination.metrics = {true, 0.08, 0.1, 0.1, 0.12, 0.1, 3000, 0.08};
+    e.registration.pose.T_W_H.translation() = T_W_H.translation();
+    e.registration.pose.T_W_H.linear() = T_W_H.linear();
     e.reacquire = reacquire;
     auto [next, verdict] = judge_health(limits_, std::move(memory_), e);
     memory_ = std::move(next);

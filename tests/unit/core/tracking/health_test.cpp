@@ -17,9 +17,9 @@ HealthLimits limits() { return health_limits(TrackerConfig{}, 60.0); }
 FrameFindings good(int frame) {
   FrameFindings e;
   e.time = MeasurementTime{frame * milliseconds(100)};
-  e.bracketed = e.registered = e.converged = true;
-  e.matched = 1000;
-  e.metrics = {true, 0.08, 0.1, 0.1, 0.12, 0.1, 3000, 0.08};
+  e.bracketed = e.registration.found = e.registration.converged = true;
+  e.registration.matched = 1000;
+  e.examination.metrics = {true, 0.08, 0.1, 0.1, 0.12, 0.1, 3000, 0.08};
   return e;
 }
 
@@ -62,45 +62,49 @@ const std::vector<Case>& cases() {
   static const std::vector<Case> all{
       {"nothing registered",
        [](FrameFindings& e) {
-         e.registered = e.converged = false;
-         e.matched = 0;
-         e.trouble = "none";
+         e.registration.found = e.registration.converged = false;
+         e.registration.matched = 0;
+         e.registration.trouble = "none";
        },
        State::lost, fault::few_matches | fault::not_converged},
       {"not converged",
        [](FrameFindings& e) {
-         e.converged = false;
-         e.trouble = "iterations";
+         e.registration.converged = false;
+         e.registration.trouble = "iterations";
        },
        State::degraded, fault::not_converged},
-      {"few matches", [](FrameFindings& e) { e.matched = 199; }, State::lost, fault::few_matches},
-      {"Q1 between the limits", [](FrameFindings& e) { e.metrics.q1 = 1.51 * 0.08; }, State::degraded,
+      {"few matches", [](FrameFindings& e) { e.registration.matched = 199; }, State::lost,
+       fault::few_matches},
+      {"Q1 between the limits", [](FrameFindings& e) { e.examination.metrics.q1 = 1.51 * 0.08; },
+       State::degraded, fault::q1_high},
+      {"Q1 above lost", [](FrameFindings& e) { e.examination.metrics.q1 = 3.01 * 0.08; }, State::lost,
        fault::q1_high},
-      {"Q1 above lost", [](FrameFindings& e) { e.metrics.q1 = 3.01 * 0.08; }, State::lost, fault::q1_high},
-      {"nothing to expect of Q1", [](FrameFindings& e) { e.metrics.q1_expected.reset(); }, State::degraded,
+      {"nothing to expect of Q1", [](FrameFindings& e) { e.examination.metrics.q1_expected.reset(); },
+       State::degraded, fault::q1_high},
+      {"no map in view", [](FrameFindings& e) { e.examination.metrics.valid = false; }, State::lost,
        fault::q1_high},
-      {"no map in view", [](FrameFindings& e) { e.metrics.valid = false; }, State::lost, fault::q1_high},
       {"contradicted",
-       [](FrameFindings& e) { e.integrity = {.faults = fault::contradicted, .reason = "off"}; }, State::lost,
-       fault::contradicted},
+       [](FrameFindings& e) { e.examination.integrity = {.faults = fault::contradicted, .reason = "off"}; },
+       State::lost, fault::contradicted},
       {"unconstrained",
-       [](FrameFindings& e) { e.integrity = {.faults = fault::unconstrained, .reason = "free"}; },
+       [](FrameFindings& e) { e.examination.integrity = {.faults = fault::unconstrained, .reason = "free"}; },
        State::degraded, fault::unconstrained},
-      {"outside the envelope", [](FrameFindings& e) { e.displacement.y() = 2.01; }, State::lost,
+      {"outside the envelope", [](FrameFindings& e) { e.registration.pose.T_W_H.translation().y() = 2.01; },
+       State::lost, fault::implausible},
+      {"jump", [](FrameFindings& e) { e.registration.pose.T_W_H.translation().x() = 1.5; }, State::degraded,
        fault::implausible},
-      {"jump", [](FrameFindings& e) { e.displacement.x() = 1.5; }, State::degraded, fault::implausible},
       {"turn",
        [](FrameFindings& e) {
-         e.rotation = rotation_from_rpy({0, 0, radians(3.0)});
+         e.registration.pose.T_W_H.linear() = rotation_from_rpy({0, 0, radians(3.0)});
        },
        State::degraded, fault::implausible},
-      {"joints do not bracket", [](FrameFindings& e) { e.bracketed = e.registered = false; }, State::fault,
-       fault::plc_stale},
+      {"joints do not bracket", [](FrameFindings& e) { e.bracketed = e.registration.found = false; },
+       State::fault, fault::plc_stale},
       {"PLC stale", [](FrameFindings& e) { e.standing = fault::plc_stale; }, State::fault, fault::plc_stale},
       {"PLC value and no bracket",
        [](FrameFindings& e) {
          e.standing = fault::plc_value;
-         e.bracketed = e.registered = false;
+         e.bracketed = e.registration.found = false;
        },
        State::fault, fault::plc_stale | fault::plc_value},
       {"a LiDAR of several silent", [](FrameFindings& e) { e.standing = fault::lidar_silent; },
@@ -126,8 +130,8 @@ HealthVerdict verdict_on(double q1, std::optional<double> expected, const Health
   machine.set = set;
   machine.run(10);
   return machine.step([&](FrameFindings& e) {
-    e.metrics.q1 = q1;
-    e.metrics.q1_expected = expected;
+    e.examination.metrics.q1 = q1;
+    e.examination.metrics.q1_expected = expected;
   });
 }
 
@@ -166,15 +170,15 @@ TEST(Health, ASitesOwnLimitDecidesAloneWhereNothingIsExpected) {
 
 TEST(Health, Q1OfAFewPointsLeavesTheDecisionToIntegrity) {
   const auto few = [](FrameFindings& e) {
-    e.metrics.q1 = 0.5;
-    e.metrics.q1_expected.reset();
-    e.metrics.few_surfels = true;
+    e.examination.metrics.q1 = 0.5;
+    e.examination.metrics.q1_expected.reset();
+    e.examination.metrics.few_surfels = true;
   };
   Machine machine = tracking_machine();
   EXPECT_EQ(machine.step(few).state, State::tracking);
   const HealthVerdict verdict = machine.step([&](FrameFindings& e) {
     few(e);
-    e.integrity = {.faults = fault::unconstrained, .reason = "few here as well"};
+    e.examination.integrity = {.faults = fault::unconstrained, .reason = "few here as well"};
   });
   EXPECT_EQ(verdict.state, State::degraded);
   EXPECT_EQ(verdict.faults, fault::unconstrained) << "of Q1 nothing is known";
@@ -273,7 +277,8 @@ TEST(Health, ABerthThatIsSearchedAtOnceStillAsksForRecoverFrames) {
 TEST(Health, AJumpWhileUniqueTakesHealthUntilThePoseIsBackWhereItCameFrom) {
   Machine machine = tracking_machine();
   for (int i = 0; i < 5; ++i) {
-    const HealthVerdict verdict = machine.step([](FrameFindings& e) { e.displacement.x() = 0.9; });
+    const HealthVerdict verdict =
+        machine.step([](FrameFindings& e) { e.registration.pose.T_W_H.translation().x() = 0.9; });
     EXPECT_EQ(verdict.state, State::degraded);
     EXPECT_EQ(verdict.faults, fault::implausible);
     EXPECT_TRUE(machine.memory.track.unique);
@@ -283,7 +288,7 @@ TEST(Health, AJumpWhileUniqueTakesHealthUntilThePoseIsBackWhereItCameFrom) {
 }
 
 TEST(Health, ReacquireForgetsTheLastPoseAndStartsTheSearch) {
-  const auto far_away = [](FrameFindings& e) { e.displacement.x() = 8.0; };
+  const auto far_away = [](FrameFindings& e) { e.registration.pose.T_W_H.translation().x() = 8.0; };
   Machine machine = tracking_machine();
   EXPECT_EQ(machine.step(far_away).state, State::degraded) << "a jump";
   const auto searching = [&](FrameFindings& e) {
@@ -308,7 +313,7 @@ constexpr int kFramesOutOfSight = 16;
 
 TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
   const auto elsewhere = [](FrameFindings& e) {
-    e.integrity = {.faults = fault::contradicted, .reason = "off"};
+    e.examination.integrity = {.faults = fault::contradicted, .reason = "off"};
   };
   Machine brief = tracking_machine();
   for (int i = 0; i < 13; ++i) {
@@ -351,7 +356,7 @@ TEST(Health, WhileTheBerthIsSearchedABetterPlaceIsNoJump) {
   (void)machine.step([](FrameFindings& e) { e.search = {4, 13, std::nullopt}; });
   const HealthVerdict verdict = machine.step([](FrameFindings& e) {
     e.search = {8, 13, std::nullopt};
-    e.displacement.x() = 9.0;
+    e.registration.pose.T_W_H.translation().x() = 9.0;
   });
   EXPECT_EQ(verdict.faults, 0) << verdict.reason;
   EXPECT_EQ(verdict.state, State::acquiring);
@@ -360,9 +365,9 @@ TEST(Health, WhileTheBerthIsSearchedABetterPlaceIsNoJump) {
 TEST(Health, JumpMayGrowWithTheTimeSinceTheLastPoseThatWasFollowed) {
   Machine machine = tracking_machine();
   for (int i = 0; i < 10; ++i) {
-    (void)machine.step([](FrameFindings& e) { e.metrics.q1 = 0.3; });
+    (void)machine.step([](FrameFindings& e) { e.examination.metrics.q1 = 0.3; });
   }
-  const auto moved = [](FrameFindings& e) { e.displacement.x() = 0.3; };  // in 1.1 s
+  const auto moved = [](FrameFindings& e) { e.registration.pose.T_W_H.translation().x() = 0.3; };  // in 1.1 s
   EXPECT_EQ(machine.step(moved).faults & fault::implausible, 0);
 }
 
@@ -370,12 +375,13 @@ TEST(Health, JumpMayGrowWithTheTimeSinceTheLastPoseThatWasFollowed) {
 std::string after_a_gap(int unseen, double metres, double deg) {
   Machine machine = tracking_machine();
   for (int i = 0; i < unseen; ++i) {
-    (void)machine.step([](FrameFindings& e) { e.metrics.q1 = 0.3; });
+    (void)machine.step([](FrameFindings& e) { e.examination.metrics.q1 = 0.3; });
   }
   return machine
       .step([&](FrameFindings& e) {
-        e.displacement.x() = metres;
-        e.rotation = Eigen::AngleAxisd(radians(deg), Eigen::Vector3d::UnitX()).toRotationMatrix();
+        e.registration.pose.T_W_H.translation().x() = metres;
+        e.registration.pose.T_W_H.linear() =
+            Eigen::AngleAxisd(radians(deg), Eigen::Vector3d::UnitX()).toRotationMatrix();
       })
       .reason;
 }
@@ -401,8 +407,10 @@ TEST(Health, SteadySpeedAboveTheLimitTakesHealth) {
     Machine machine = tracking_machine();
     bool healthy = true;
     for (int i = 1; i <= 20; ++i) {
-      healthy = machine.step([&](FrameFindings& e) { e.displacement.x() = speed * 0.1 * i; }).state ==
-                State::tracking;
+      healthy =
+          machine
+              .step([&](FrameFindings& e) { e.registration.pose.T_W_H.translation().x() = speed * 0.1 * i; })
+              .state == State::tracking;
     }
     EXPECT_EQ(healthy, speed < 0.3) << speed;
   }
@@ -419,7 +427,8 @@ std::vector<double> alarms(const std::function<double(double)>& x, double second
   for (int i = 0; 0.1 * i < seconds; ++i) {
     const double t = first_t + 0.1 * i;
     const HealthVerdict verdict = machine.step([&](FrameFindings& e) {
-      e.displacement = Eigen::Vector3d(x(t) + error(random), error(random), error(random));
+      e.registration.pose.T_W_H.translation() =
+          Eigen::Vector3d(x(t) + error(random), error(random), error(random));
     });
     if (i >= 10 && (verdict.faults & fault::implausible) != 0) {
       result.push_back(t);
@@ -470,7 +479,7 @@ TEST(Health, TurningFasterThanTheEndsMayMoveTakesHealth) {
     HealthVerdict verdict;
     for (int i = 1; i <= 20; ++i) {
       verdict = machine.step([&](FrameFindings& e) {
-        e.rotation =
+        e.registration.pose.T_W_H.linear() =
             Eigen::AngleAxisd(radians(rate_deg) * 0.1 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
       });
     }
@@ -488,7 +497,8 @@ TEST(Health, RollingAsWavesDoKeepsHealth) {
     const double roll = radians(1.0) * std::sin(2.0 * 3.14159 * 0.1 * i / 8.0);
     EXPECT_EQ(machine
                   .step([&](FrameFindings& e) {
-                    e.rotation = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
+                    e.registration.pose.T_W_H.linear() =
+                        Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
                   })
                   .state,
               State::tracking);

@@ -66,7 +66,7 @@ class Track {
 
 double error(const TrackResult& result, const Pose& T_W_H) {
   const Eigen::Vector3d p = tracker_config().hull.reference_point;
-  return (result.T_W_H * p - T_W_H * p).norm();
+  return (result.pose.T_W_H * p - T_W_H * p).norm();
 }
 
 TEST(HullTracker, FindsAMooredHullAndSaysSo) {
@@ -148,7 +148,7 @@ TEST(HullTracker, TellsTheMotionOfAHealthyHullAlone) {
 }
 
 double turn_error(const TrackResult& result, const Pose& T_W_H) {
-  return rotation_angle(result.T_W_H.linear().transpose() * T_W_H.linear());
+  return rotation_angle(result.pose.T_W_H.linear().transpose() * T_W_H.linear());
 }
 
 TEST(HullTracker, FindsAHullThatLiesElsewhereAndIsNeverHealthyOffIt) {
@@ -251,7 +251,7 @@ TEST(HullTracker, SameCallsGiveTheSameBits) {
     const Pose T_W_H = displaced({0.005 * i, 0, 0});
     const TrackResult ra = a.step(&a.ship(), {.T_W_H = T_W_H});
     const TrackResult rb = b.step(&b.ship(), {.T_W_H = T_W_H});
-    EXPECT_EQ(ra.T_W_H.matrix(), rb.T_W_H.matrix());
+    EXPECT_EQ(ra.pose.T_W_H.matrix(), rb.pose.T_W_H.matrix());
     EXPECT_EQ(ra.metrics.q1, rb.metrics.q1);
     EXPECT_EQ(ra.state, rb.state);
   }

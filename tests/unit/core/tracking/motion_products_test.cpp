@@ -25,11 +25,9 @@ class Ship {
     const Pose T_W_H = truth_(0.1 * static_cast<double>(frame_));
     const MeasurementTime time{milliseconds(1'000'000 + 100 * frame_++)};
     if (!health) {  // whatever registration found then must not matter
-      return gauge_.update(time, false, Eigen::Vector3d::Constant(9.0), Eigen::Vector3d::Constant(1.0),
-                           Pose(Eigen::Translation3d(5, 5, 5)));
+      return gauge_.update(time, false, {Pose(Eigen::Translation3d(5, 5, 5)), kReference});
     }
-    return gauge_.update(time, true, T_W_H * kReference - kReference, rpy_from_rotation(T_W_H.linear()),
-                         T_W_H);
+    return gauge_.update(time, true, {T_W_H, kReference});
   }
   MotionProducts run(double seconds, bool health = true) {
     MotionProducts last;
@@ -151,8 +149,7 @@ TEST(MotionProducts, WavesHardlyShowInTheRates) {
 TEST(MotionProducts, AClockThatRunsBackwardsBeginsAnotherRun) {
   MotionGauge gauge(kMapped);
   const auto at = [&](int tenth) {
-    return gauge.update(MeasurementTime{milliseconds(100 * tenth)}, true, Eigen::Vector3d::Zero(),
-                        Eigen::Vector3d::Zero(), Pose::Identity());
+    return gauge.update(MeasurementTime{milliseconds(100 * tenth)}, true, HullPose{});
   };
   for (int i = 0; i < 300; ++i) {
     (void)at(i);

@@ -18,8 +18,7 @@ TrackResult healthy_frame(SteadyTime mid, std::uint32_t number, double x) {
   r.time = MeasurementTime{mid.time_since_epoch()};
   r.registered = r.converged = r.health = true;
   r.state = State::tracking;
-  r.displacement = {x, 0.2, 0.3};
-  r.rpy = {radians(0.1), radians(0.2), radians(0.3)};
+  r.pose = moved_hull({x, 0.2, 0.3}, rotation_from_rpy({radians(0.1), radians(0.2), radians(0.3)}));
   r.sigma_translation = 0.01;
   r.sigma_rotation = radians(0.02);
   r.metrics = {true, 0.07, 0.08, 0.09, 0.1, 0.11, 1000};

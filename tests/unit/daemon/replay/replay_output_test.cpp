@@ -23,8 +23,7 @@ TrackResult result(std::uint32_t frame, double x, State state) {
   r.frame = frame;
   r.time = MeasurementTime{std::chrono::milliseconds(50 + 100 * frame)};
   r.registered = true;
-  r.displacement = {x, 0.0, 0.0};
-  r.T_W_H.translation() = r.displacement;
+  r.pose.T_W_H.translation() = Eigen::Vector3d(x, 0.0, 0.0);
   r.state = state;
   r.health = state == State::tracking;
   r.metrics = {true, 0.07, 0.08, 0.09, 0.1, 0.125, 1000};

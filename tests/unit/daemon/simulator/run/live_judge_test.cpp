@@ -13,7 +13,7 @@ using testing::HasSubstr;
 
 /// What a perfect service writes at `time` about the scan 50 ms before, off by `error` m in x.
 WriteBlock block(const SimulatedBerth& berth, Nanoseconds time, bool health, double error) {
-  const HullPose truth = berth.truth(time - milliseconds(50));
+  const ShipPose truth = berth.truth(time - milliseconds(50));
   WriteBlock b;
   b.health = health;
   b.state = health ? State::tracking : State::lost;

@@ -15,8 +15,8 @@ double top_speed(const std::string& name) {
   double top = 0.0;
   constexpr auto kStep = std::chrono::milliseconds(100);
   for (int frame = 0; frame < berth->frames(); ++frame) {
-    const HullPose here = berth->truth(frame * kStep);
-    const HullPose then = berth->truth((frame + 1) * kStep);
+    const ShipPose here = berth->truth(frame * kStep);
+    const ShipPose then = berth->truth((frame + 1) * kStep);
     const double moved = (then.displacement - here.displacement).norm();
     top = std::max(top, moved / to_seconds(kStep));
   }

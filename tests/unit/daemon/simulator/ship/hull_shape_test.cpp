@@ -80,7 +80,7 @@ TEST(HullShape, TruthAtTheReferencePointIsThatOfTheBentMesh) {
       return best;
     };
     const Eigen::Vector3d corner_H = highest_near(p_H.x());
-    const HullPose truth = berth->truth(end);
+    const ShipPose truth = berth->truth(end);
     EXPECT_NEAR((berth->T_W_H(end) * corner_H - p_H - truth.displacement).norm(), 0.0, 1e-3) << name;
     EXPECT_NEAR(std::abs((corner_H - p_H).z()), std::abs(berth->bend(end)), 2e-3) << name;
   }

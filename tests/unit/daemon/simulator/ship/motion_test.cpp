@@ -22,7 +22,7 @@ TEST(HullMotion, MooringStaysWithinItsAmplitudes) {
     const HullMotion motion(config, kReference, seed);
     double largest = 0.0;
     for (double t = 0.0; t < 2000.0; t += 0.5) {
-      const HullPose pose = motion.pose(t);
+      const ShipPose pose = motion.pose(t);
       EXPECT_LE(std::abs(pose.displacement.x()), 0.05);
       EXPECT_LE(std::abs(pose.rpy.x()), radians(0.1));
       EXPECT_EQ(pose.displacement.y(), 0.0);
