@@ -104,11 +104,17 @@ void PoseFinder::thin(const Cloud& hull_W) {
 
 PlaneIcpResult PoseFinder::find(const Cloud& hull_W, MeasurementTime time, const Track& track) {
   thin(hull_W);
+  const bool in_vain = !track.unique && frames_searched_ >= kFramesUntilSearchedAgain;
+  if (track.searches != searches_ || in_vain) {
+    searches_ = track.searches;
+    search_is_stale_ = true;
+    challenger_.reset();
+  }
   if (few_W_.size() < kFewestForSearch) {
     search_is_stale_ = true;
   } else if (!track.unique) {
     if (search_is_stale_) {
-      begin_search(time);
+      begin_search(time, track);
     }
     search_.advance(few_W_, kStartsAFrame, plane_icp_);
     frames_searched_ += search_.complete() ? 1 : 0;
@@ -185,17 +191,31 @@ Pose PoseFinder::best_start(MeasurementTime time, const Track& track) {
   return best;
 }
 
-std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
+SearchProgress PoseFinder::search(const Track& track, const std::optional<Answer>& answer,
+                                  const std::function<bool(const Pose&)>& contradicts) {
+  if (!answer) {
+    return progress(Pose::Identity());
+  }
+  settle(track, answer->T_H_W, answer->T_H_W, answer->contradicted);
+  if (const auto place = answer->contradicted ? std::nullopt : rival(track, answer->T_H_W)) {
+    const Pose T_H_W = plane_icp_.align(thinned_W_, map_->planes(), *place, bend_.now()).icp.T_target_source;
+    settle(track, *place, T_H_W, contradicts(T_H_W));
+  }
+  return progress(answer->T_H_W);
+}
+
+/// The place to examine beside T_H_W, if there is one.
+std::optional<Pose> PoseFinder::rival(const Track& track, const Pose& T_H_W) {
   if (few_W_.size() < kFewestForSearch) {
     return std::nullopt;
   }
-  if (unique_ && challenger_) {
+  if (track.unique && challenger_) {
     challenger_ = T_H_W;  // it was this frame's best start: go on from the pose found there
     return std::nullopt;
   }
-  if (unique_) {
+  if (track.unique) {
     challenger_ = search_.challenge(few_W_, T_H_W, kClearlyBetter, plane_icp_);
-    return challenger_ ? std::optional(aligned(*challenger_)) : std::nullopt;
+    return challenger_;
   }
   const double least = kRivals * search_.score(few_W_, T_H_W, plane_icp_);
   for (const HullSearch::Place& place : search_.places()) {
@@ -203,24 +223,23 @@ std::optional<PoseFinder::Rival> PoseFinder::rival(const Pose& T_H_W) {
       break;
     }
     if (!place.contradicted && !place.explains && search_.distance(place.T_H_W, T_H_W) > kOtherPlace) {
-      return aligned(place.T_H_W);
+      return place.T_H_W;
     }
   }
   return std::nullopt;
 }
 
-PoseFinder::Rival PoseFinder::aligned(const Pose& start) {
-  return {start, plane_icp_.align(thinned_W_, map_->planes(), start, bend_.now()).icp.T_target_source};
-}
-
-void PoseFinder::settle(const Pose& start, const Pose& T_H_W, bool contradicted) {
-  if (!unique_) {
+/// Notes how the examination of a pose ended: aligning from `start` led to T_H_W. While the pose is unique
+/// this only drops a challenger that the scan contradicts.
+void PoseFinder::settle(const Track& track, const Pose& start, const Pose& T_H_W, bool contradicted) {
+  if (!track.unique) {
     search_.settle(start, T_H_W, contradicted);
   } else if (contradicted) {
     challenger_.reset();  // it explains more points, but its examination spoke against it
   }
 }
 
+/// How far the search has come, and the first place that rivals T_H_W.
 SearchProgress PoseFinder::progress(const Pose& T_H_W) const {
   SearchProgress progress{search_.tried(), search_.starts(), std::nullopt};
   if (search_is_stale_) {
@@ -236,29 +255,14 @@ SearchProgress PoseFinder::progress(const Pose& T_H_W) const {
   return progress;
 }
 
-void PoseFinder::judged(const Track& track, bool reacquire) {
-  if (reacquire) {
-    last_seen_.reset();
-  }
-  if (track.followed && track.unique) {
-    last_seen_ = track.followed;
-  }
-  const bool searched_in_vain = !track.unique && frames_searched_ >= kFramesUntilSearchedAgain;
-  if (reacquire || searched_in_vain || (unique_ && !track.unique)) {
-    search_is_stale_ = true;
-    challenger_.reset();
-  }
-  unique_ = track.unique;
-}
-
-void PoseFinder::begin_search(MeasurementTime time) {
+void PoseFinder::begin_search(MeasurementTime time, const Track& track) {
   search_is_stale_ = false;
   frames_searched_ = 0;
   Box reach = hull_.envelope;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  if (last_seen_) {
-    const HullPose& seen = last_seen_->pose;
-    const double unseen = std::max(0.0, to_seconds(time - last_seen_->time));
+  if (track.last_unique) {
+    const HullPose& seen = track.last_unique->pose;
+    const double unseen = std::max(0.0, to_seconds(time - track.last_unique->time));
     const double far = std::min(kFarthestUnseen, kFastestHull * unseen + kUnseen);
     reach.min.x() = std::min(reach.min.x(), static_cast<float>(seen.displacement().x() - far));
     reach.max.x() = std::max(reach.max.x(), static_cast<float>(seen.displacement().x() + far));

@@ -7,12 +7,16 @@
 //   - while the pose is not unique: the places that the search of the berth has found (hull_search.hpp).
 // A pose is unique if it follows from one that no other place of the berth rivalled (Track::unique).
 // No error accumulates, since every frame is aligned to the map. So that a false place does not persist, each
-// frame with a unique pose tries one stretch of the berth for a challenger.
-// Frames: scan in W, answers as T_H_W; metres, radians. Failure: states in IcpResult.
-// Thread rule: one owner. Cost: 2 ms a frame when following, up to 10 ms more while searching.
+// frame with a unique pose tries one stretch of the berth for a challenger. A frame is find(), search(), and
+// learn() if nothing speaks against its pose. A search begins anew when the track wants it, or after ten
+// frames in which all its starts were tried in vain. Frames: scan in W, answers as T_H_W; metres, radians.
+// Failure: states in IcpResult. Thread rule: one owner. Cost: 2 ms a frame when following, up to 10 ms more
+// while searching.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "core/filter/voxel_filter.hpp"
@@ -38,15 +42,19 @@ class PoseFinder {
   /// (point to point) gives no covariance.
   [[nodiscard]] PlaneIcpResult find(const Cloud& hull_W, MeasurementTime time, const Track& track);
 
-  /// A place to examine beside T_H_W, the answer of find(), and what aligning all of the scan from it leads
-  /// to. While T_H_W is not unique: the best place of the search that explains about as well (kRivals), lies
-  /// elsewhere and is not examined yet. While T_H_W is unique: a challenger, if the stretch of the berth that
-  /// is tried in this frame has one. Nothing if there is none.
-  struct Rival {
-    Pose start;  // T_H_W, the place
-    Pose T_H_W;  // what aligning from it led to
+  /// Does another place of the berth explain the scan as well? `answer`: that of find() for the same scan and
+  /// track, and whether the scan contradicts it; nothing if find() found no pose. If it is not contradicted,
+  /// one other place is examined: all of the scan is aligned from it, and `contradicts` says whether the scan
+  /// contradicts the pose T_H_W that this leads to. While the pose is not unique that place is the best of
+  /// the search that explains about as well (kRivals), lies elsewhere and is not examined yet. While it is
+  /// unique, it is a challenger, if the stretch of the berth that is tried in this frame has one. Returns how
+  /// far the search has come, and the first place that rivals the answer.
+  struct Answer {
+    Pose T_H_W;
+    bool contradicted = false;
   };
-  [[nodiscard]] std::optional<Rival> rival(const Pose& T_H_W);
+  [[nodiscard]] SearchProgress search(const Track& track, const std::optional<Answer>& answer,
+                                      const std::function<bool(const Pose& T_H_W)>& contradicts);
 
   /// Learns from a frame whose pose the scan did not contradict: updates the bend and the mean of
   /// PlaneCovariance::shared.
@@ -56,18 +64,6 @@ class PoseFinder {
   /// Covariance of the answer of find(), whose covariance is `fit`; about the fit's centre in H, rad and m.
   [[nodiscard]] Matrix6 covariance(const PlaneCovariance& fit) const;
 
-  /// Tells how the examination of a pose ended. `start` and T_H_W: both the answer of find(), or the members
-  /// of a Rival. While the pose is unique this only drops a challenger that the scan contradicts.
-  void settle(const Pose& start, const Pose& T_H_W, bool contradicted);
-
-  /// How far the search has come, and the first place that rivals `T_H_W`, the answer of find().
-  [[nodiscard]] SearchProgress progress(const Pose& T_H_W) const;
-
-  /// To be called when the frame is judged. Remembers a unique pose. The search begins anew after a
-  /// re-acquire edge, when the pose is no longer unique, or after ten frames in which it had tried all starts
-  /// in vain.
-  void judged(const Track& track, bool reacquire);
-
   /// The thinned scan of the last find(), W.
   [[nodiscard]] const Cloud& thinned_W() const { return thinned_W_; }
 
@@ -75,8 +71,10 @@ class PoseFinder {
   void thin(const Cloud& hull_W);
   [[nodiscard]] Pose best_start(MeasurementTime time, const Track& track);
   [[nodiscard]] Pose followed(MeasurementTime time, const Track& track) const;
-  void begin_search(MeasurementTime time);
-  [[nodiscard]] Rival aligned(const Pose& start);
+  void begin_search(MeasurementTime time, const Track& track);
+  [[nodiscard]] std::optional<Pose> rival(const Track& track, const Pose& T_H_W);
+  void settle(const Track& track, const Pose& start, const Pose& T_H_W, bool contradicted);
+  [[nodiscard]] SearchProgress progress(const Pose& T_H_W) const;
 
   HullConfig hull_;
   RegistrationConfig registration_;
@@ -94,12 +92,11 @@ class PoseFinder {
   Cloud askew_;      // the scan turned by kAskew, only to choose points
   Cloud thinned_W_;  // of a sparse scan: its unthinned points, at most kMostOfSparse
   bool is_sparse_ = false;
-  Cloud few_W_;                            // at most kFew of the thinned scan's points, evenly taken
-  std::optional<Pose> challenger_;         // T_H_W that explains more than the last frame's pose
-  std::optional<FollowedPose> last_seen_;  // last unique pose since the last re-acquire edge
-  bool unique_ = false;                    // Track::unique when the last frame was judged
-  bool search_is_stale_ = true;            // the next scan with enough points begins a new one
-  int frames_searched_ = 0;                // frames since all starts were tried
+  Cloud few_W_;                     // at most kFew of the thinned scan's points, evenly taken
+  std::optional<Pose> challenger_;  // T_H_W that explains more than the last frame's pose
+  std::uint64_t searches_ = 0;      // Track::searches of the last find()
+  bool search_is_stale_ = true;     // the next scan with enough points begins a new one
+  int frames_searched_ = 0;         // frames since all starts were tried
 };
 
 }  // namespace hulltrack

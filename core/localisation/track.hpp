@@ -4,6 +4,7 @@
 // Frame W; metres, radians. A plain value of bounded size.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "core/base/time.hpp"
@@ -26,9 +27,11 @@ struct FollowedPose {
 };
 
 struct Track {
-  std::optional<FollowedPose> followed;  // the last pose that the scan did not contradict
-  HullSpeedRecord speed_record;          // of the followed poses
-  bool unique = false;                   // the pose follows from one that no other place rivalled
+  std::optional<FollowedPose> followed;     // the last pose that the scan did not contradict
+  HullSpeedRecord speed_record;             // of the followed poses
+  bool unique = false;                      // the pose follows from one that no other place rivalled
+  std::optional<FollowedPose> last_unique;  // the last followed pose that was unique, since a re-acquire edge
+  std::uint64_t searches = 0;               // counts up each time that the berth has to be searched anew
 };
 
 }  // namespace hulltrack

@@ -312,9 +312,12 @@ HealthLimits health_limits(const TrackerConfig& config, double half_length) {
 
 std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, HealthMemory memory,
                                                     const FrameFindings& e) {
+  const bool was_unique = memory.track.unique;
   if (e.reacquire) {
+    const std::uint64_t searches = memory.track.searches;
     memory = HealthMemory{};
     memory.state = State::acquiring;
+    memory.track.searches = searches;
   }
   HealthVerdict verdict;
   if (e.hold) {
@@ -326,6 +329,11 @@ std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, 
                        (e.joint_trouble.empty() ? std::string{} : ": " + e.joint_trouble));
   } else {
     verdict = judge_pose(limits, memory, e);
+  }
+  Track& track = memory.track;
+  track.searches += e.reacquire || (was_unique && !track.unique) ? 1 : 0;
+  if (track.followed && track.unique) {
+    track.last_unique = track.followed;
   }
   return {std::move(memory), std::move(verdict)};
 }

@@ -109,7 +109,6 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), findings);
   memory = std::move(next);
-  finder.judged(memory.track, inputs.reacquire);
   TrackResult result = result_of(findings, std::move(verdict));
   result.frame = scan.frame_number;
   result.motion = motion.update(result.time, result.health, result.pose);
@@ -203,19 +202,16 @@ std::optional<Matrix6> HullTracker::Impl::covariance_of(const FrameFindings& fin
          covariance_of_joints(scan_filter.machine(), joints, findings.time, pose.reference_W());
 }
 
-/// Does another place explain the scan as well? The frame's pose is reported to the search as right or
-/// contradicted. Then at most one other place is aligned, checked in the same way and reported.
+/// Does another place explain the scan as well? Another place is examined in the same way as the frame's
+/// pose.
 SearchProgress HullTracker::Impl::search(const FrameFindings& findings) {
-  const Pose T_H_W = findings.registration.pose.T_W_H.inverse();
+  std::optional<PoseFinder::Answer> answer;
   if (findings.registration.found) {
-    const bool wrong = findings.contradicted();
-    finder.settle(T_H_W, T_H_W, wrong);
-    if (const auto rival = wrong ? std::nullopt : finder.rival(T_H_W)) {
-      const IntegrityReport report = examiner.report_at(rival->T_H_W.inverse(), seen());
-      finder.settle(rival->start, rival->T_H_W, !is_alternative(report, findings.examination.confirmed));
-    }
+    answer = {findings.registration.pose.T_W_H.inverse(), findings.contradicted()};
   }
-  return finder.progress(T_H_W);
+  return finder.search(memory.track, answer, [&](const Pose& T_H_W) {
+    return !is_alternative(examiner.report_at(T_H_W.inverse(), seen()), findings.examination.confirmed);
+  });
 }
 
 /// Learns whether the hull seems to move with a joint. That contradicts the machine only if the quay has

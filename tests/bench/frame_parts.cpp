@@ -46,7 +46,6 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
     const MeasurementTime time = scan.mid_time();
     if (!track.followed) {
       follow(recording.T_W_H, time, track);
-      finder.judged(track, false);
     }
     Stopwatch watch;
     const auto done = [&](const char* part) {
@@ -90,12 +89,10 @@ void time_frame_parts(const FrameRecording& recording, const HullMap& map, Parts
                     .in_view > 0,
             "no landmark in view");
     done("landmarks");
-    if (const auto rival = finder.rival(found.icp.T_target_source)) {
-      finder.settle(rival->start, rival->T_H_W, true);  // the scan contradicts every other place
-    }
+    (void)finder.search(track, PoseFinder::Answer{found.icp.T_target_source, false},
+                        [](const Pose&) { return true; });  // the scan contradicts every other place
     done("challenge");
     follow(T_W_H, time, track);
-    finder.judged(track, false);
     finder.learn(time, found);
     done("learn");
   });

@@ -48,12 +48,8 @@ class Finding : public ::testing::Test {
   /// A frame that finds no fault with its pose, nor with a rival if `rivals_fit`.
   Pose step(const Cloud& hull_W, bool rivals_fit = true) {
     const Pose T_H_W = finder.find(hull_W, time, track).icp.T_target_source;
-    finder.settle(T_H_W, T_H_W, false);
-    if (const auto rival = finder.rival(T_H_W)) {
-      finder.settle(rival->start, rival->T_H_W, !rivals_fit);
-    }
-    progress = finder.progress(T_H_W);
-    finder.judged(track, false);
+    progress =
+        finder.search(track, PoseFinder::Answer{T_H_W, false}, [&](const Pose&) { return !rivals_fit; });
     time += std::chrono::milliseconds(100);
     return T_H_W.inverse();
   }
@@ -136,12 +132,11 @@ TEST_F(Finding, ABetterPlaceThatTheScanContradictsNeverTakesTheFrame) {
     follow(elsewhere);
     const Pose T_H_W = finder.find(hull_W, time, track).icp.T_target_source;
     EXPECT_GT(error(T_H_W.inverse(), displacement), 1.0) << i;
-    if (const auto rival = finder.rival(T_H_W)) {
-      EXPECT_LT(error(rival->T_H_W.inverse(), displacement), 0.1) << "aligned with all of the scan";
-      finder.settle(rival->start, rival->T_H_W, true);
+    (void)finder.search(track, PoseFinder::Answer{T_H_W, false}, [&](const Pose& rival) {
+      EXPECT_LT(error(rival.inverse(), displacement), 0.1) << "aligned with all of the scan";
       ++examined;
-    }
-    finder.judged(track, false);
+      return true;
+    });
     time += std::chrono::milliseconds(100);
   }
   EXPECT_GE(examined, 2) << "each time that its stretch of starts comes round";
@@ -151,8 +146,7 @@ TEST_F(Finding, AfterAReacquireEdgeTheBerthIsSearchedAnew) {
   const Cloud hull_W = scan_of(lying({-12.0, 1.0, 2.0}));
   (void)search(hull_W);
   ASSERT_EQ(progress.tried, progress.starts);
-  finder.judged(track, true);
-  EXPECT_LT(finder.progress(Pose::Identity()).tried, finder.progress(Pose::Identity()).starts);
+  ++track.searches;
   (void)step(hull_W);
   EXPECT_LT(progress.tried, progress.starts);
 }
@@ -160,9 +154,11 @@ TEST_F(Finding, AfterAReacquireEdgeTheBerthIsSearchedAnew) {
 TEST_F(Finding, AHullUnseenForLongIsLookedForBeyondTheEnvelopeToo) {
   follow({0.0, 0.0, 0.0});
   (void)step(scan_of(lying({0.0, 0.0, 0.0})));
+  const auto last = track.followed;
   track = {};
+  track.last_unique = last;
+  track.searches = 1;
   time += std::chrono::seconds(60);
-  finder.judged(track, false);
   const Vector3d displacement{-34.0, 0.0, 0.0};  // the envelope ends at 30 m, a drift of a minute at 36 m
   EXPECT_LT(error(search(scan_of(lying(displacement))), displacement), 0.05);
 }
