@@ -191,7 +191,7 @@ std::vector<RimPoint> find_rims(const Cloud& cloud_H, const KdTree& map, const R
   return rims;
 }
 
-void measure_rims(const KdTree& map, std::vector<RimPoint>& rims) {
+std::vector<RimPoint> measured_rims(const KdTree& map, std::vector<RimPoint> rims) {
   std::map<std::uint32_t, std::vector<RimPoint*>> by_landmark;
   for (RimPoint& rim : rims) {
     if (rim.landmark != Surfel::kNoLandmark) {
@@ -204,47 +204,38 @@ void measure_rims(const KdTree& map, std::vector<RimPoint>& rims) {
       measure_rim(map, rim);
     }
   }
+  return rims;
 }
 
-std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t landmarks,
-                                     std::vector<Surfel>& surfels) {
+std::vector<Point> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t landmarks,
+                                      std::span<const Surfel> surfels) {
   std::vector<RimPoint> measured;
   std::copy_if(rims.begin(), rims.end(), std::back_inserter(measured),
                [](const RimPoint& rim) { return rim.is_measured(); });
-  std::vector<bool> is_wall(landmarks, false);
+  std::vector<Point> outward(landmarks, Point::Zero());
   if (measured.empty()) {
-    return is_wall;
+    return outward;
   }
   Cloud places;
   for (const RimPoint& rim : measured) {
     places.push_back(seen_from_above(rim.p_H));
   }
   const KdTree tree(places);
-  struct Wall {
-    Point outward = Point::Zero();  // sum of outward_under() over the landmark's surfels
-    float surfels = 0.0F;           // how many the landmark has
-  };
-  std::vector<Wall> walls(landmarks);
+  std::vector<float> members(landmarks, 0.0F);
   for (const Surfel& surfel : surfels) {
     if (surfel.landmark != Surfel::kNoLandmark) {
-      ++walls[surfel.landmark].surfels;
+      ++members[surfel.landmark];
       if (const auto near = tree.nearest(seen_from_above(surfel.centre_H), kRimAside)) {
-        walls[surfel.landmark].outward += outward_under(measured[near->index], surfel);
+        outward[surfel.landmark] += outward_under(measured[near->index], surfel);
       }
     }
   }
-  for (Surfel& surfel : surfels) {
-    if (surfel.landmark == Surfel::kNoLandmark) {
-      continue;
-    }
-    const Wall& wall = walls[surfel.landmark];
-    if (wall.outward.norm() > 0.5F * wall.surfels) {
-      is_wall[surfel.landmark] = true;
-      surfel.normal_H *= std::copysign(1.0F, wall.outward.dot(surfel.normal_H));
-      surfel.backed = true;
+  for (std::size_t i = 0; i < outward.size(); ++i) {
+    if (!(outward[i].norm() > 0.5F * members[i])) {
+      outward[i].setZero();
     }
   }
-  return is_wall;
+  return outward;
 }
 
 }  // namespace hulltrack

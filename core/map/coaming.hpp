@@ -5,7 +5,7 @@
 //   is
 //        too narrow for the surfels of the metric subset and has a row of finer points of its own, those of
 //        one landmark.
-// Steps: find_rims(), landmark numbers for the rim points (landmarks.hpp), measure_rims(),
+// Steps: find_rims(), landmark numbers for the rim points (landmarks.hpp), measured_rims(),
 // find_coaming_walls(). Frame H, metres. Pure functions. Cost: some 5 us a map point near a rim.
 #pragma once
 
@@ -37,14 +37,14 @@ inline constexpr std::size_t kFewestRimPoints = 5;  // of a rim: a metre of rim
 /// Points on the rims of all holds, without landmark and edges. `map` is the tree over `cloud_H`.
 [[nodiscard]] std::vector<RimPoint> find_rims(const Cloud& cloud_H, const KdTree& map, const Relief& relief);
 
-/// For the rim points of each landmark: moves them onto the line through them, takes the landmark from those
-/// that lie off the line, and finds the rim's edges from the map's points around.
-void measure_rims(const KdTree& map, std::vector<RimPoint>& rims);
+/// `rims` with the edges that the map's points around show. The points of each landmark are moved onto the
+/// line through them; those that lie off the line no longer have a landmark.
+[[nodiscard]] std::vector<RimPoint> measured_rims(const KdTree& map, std::vector<RimPoint> rims);
 
-/// Which of `landmarks` landmarks are walls of a coaming? A landmark is one if most of its surfels lie below
-/// an edge of a measured rim, in line with the edge, and face across the rim. Their normals are turned away
-/// from the rim's middle and they become Surfel::backed: a wall is not seen from within the coaming.
-[[nodiscard]] std::vector<bool> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t landmarks,
-                                                   std::vector<Surfel>& surfels);
+/// Which of `landmarks` landmarks are walls of a coaming? For each the sum of the level directions from a
+/// rim's middle through the wall; zero for those that are none. A landmark is a wall if most of its surfels
+/// lie below an edge of a measured rim, in line with the edge, and face across the rim.
+[[nodiscard]] std::vector<Point> find_coaming_walls(std::span<const RimPoint> rims, std::uint32_t landmarks,
+                                                    std::span<const Surfel> surfels);
 
 }  // namespace hulltrack

@@ -15,25 +15,28 @@ Cloud thinned(const Cloud& cloud, float voxel) {
   return out;
 }
 
+Cloud joined(Cloud points, const std::vector<RimPoint>& rims) {
+  for (const RimPoint& rim : rims) {
+    points.push_back(rim.p_H);
+  }
+  return points;
+}
+
 }  // namespace
 
-HullMap::HullMap(Cloud cloud_H)
+HullMap::HullMap(Cloud cloud_H) : HullMap(Relief(cloud_H), std::move(cloud_H)) {}
+
+HullMap::HullMap(const Relief& relief, Cloud&& cloud_H)
     : cloud_H_(std::move(cloud_H)),
       tree_(cloud_H_),
       subset_H_(thinned(cloud_H_, kSubsetVoxel)),
-      surfels_(compute_surfels(subset_H_, tree_)),
+      landmarked_(find_landmarks(subset_H_, tree_, relief,
+                                 oriented_surfels(subset_H_, tree_, compute_surfels(subset_H_, tree_)),
+                                 find_rims(cloud_H_, tree_, relief))),
+      probes_H_(joined(subset_H_, landmarked_.rims)),
       occluders_H_(thinned(cloud_H_, kOccluderVoxel)),
-      relief_(cloud_H_),
-      planes_(cloud_H_, tree_, relief_),
-      occupancy_(subset_H_) {
-  orient_surfels(subset_H_, tree_, surfels_);
-  rims_ = find_rims(cloud_H_, tree_, relief_);
-  landmarks_ = find_landmarks(subset_H_, tree_, relief_, surfels_, rims_);
-  probes_H_ = subset_H_;
-  for (const RimPoint& rim : rims_) {
-    probes_H_.push_back(rim.p_H);
-  }
-}
+      planes_(cloud_H_, tree_, relief),
+      occupancy_(subset_H_) {}
 
 double HullMap::length() const {
   constexpr float kShortest = 1.0F;  // m: a map of one point has a length, too

@@ -35,11 +35,11 @@ class HullMap {
 
   /// The metric subset, and for each of its points the surface around it; same indices.
   [[nodiscard]] const Cloud& subset_H() const { return subset_H_; }
-  [[nodiscard]] const std::vector<Surfel>& surfels() const { return surfels_; }
+  [[nodiscard]] const std::vector<Surfel>& surfels() const { return landmarked_.surfels; }
 
   /// Points on the tops of the hatches' coamings, and the landmarks that rim points and surfels form.
-  [[nodiscard]] const std::vector<RimPoint>& rims() const { return rims_; }
-  [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarks_; }
+  [[nodiscard]] const std::vector<RimPoint>& rims() const { return landmarked_.rims; }
+  [[nodiscard]] const std::vector<Landmark>& landmarks() const { return landmarked_.landmarks; }
 
   /// The points that are looked for in a scan: first the metric subset, then the rim points.
   [[nodiscard]] const Cloud& probes_H() const { return probes_H_; }
@@ -53,15 +53,14 @@ class HullMap {
   [[nodiscard]] const OccupancyGrid& occupancy() const { return occupancy_; }
 
  private:
+  HullMap(const Relief& relief, Cloud&& cloud_H);
+
   Cloud cloud_H_;
   KdTree tree_;
   Cloud subset_H_;
-  std::vector<Surfel> surfels_;
-  std::vector<RimPoint> rims_;
-  std::vector<Landmark> landmarks_;  // by number
+  LandmarkedMap landmarked_;
   Cloud probes_H_;
   PointBlocks occluders_H_;
-  Relief relief_;
   PlaneMap planes_;
   OccupancyGrid occupancy_;
 };

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <utility>
 
 namespace hulltrack {
 namespace {
@@ -76,9 +78,13 @@ std::vector<std::uint32_t> cluster(const Cloud& points, std::size_t fewest, std:
   return landmarks;
 }
 
-/// Turns all normals of a landmark to the side that most of its backed surfels face. The landmark is backed
-/// if that majority is larger than half of all its surfels.
-void give_landmarks_one_side(std::vector<Surfel>& surfels, std::uint32_t landmarks) {
+/// The side of each landmark to which most of its backed surfels face, and whether that makes it backed: the
+/// majority has to be larger than half of all its surfels.
+struct Side {
+  Point direction = Point::Zero();  // normal of the landmark's first surfel, turned to that side
+  bool backed = false;
+};
+std::vector<Side> sides_of(std::span<const Surfel> surfels, std::uint32_t landmarks) {
   struct Vote {
     Point direction = Point::Zero();  // normal of the landmark's first surfel
     float side = 0.0F;  // backed surfels that face the direction, less those that face away from it
@@ -93,20 +99,39 @@ void give_landmarks_one_side(std::vector<Surfel>& surfels, std::uint32_t landmar
       vote.side += surfel.backed ? std::copysign(1.0F, vote.direction.dot(surfel.normal_H)) : 0.0F;
     }
   }
+  std::vector<Side> sides;
+  for (const Vote& vote : votes) {
+    sides.push_back({vote.side < 0.0F ? Point(-vote.direction) : vote.direction,
+                     std::abs(vote.side) > 0.5F * vote.surfels});
+  }
+  return sides;
+}
+
+/// The surfels, all of a landmark facing one side.
+std::vector<Surfel> facing(std::vector<Surfel> surfels, std::span<const Side> sides) {
   for (Surfel& surfel : surfels) {
     if (surfel.landmark != Surfel::kNoLandmark) {
-      const Vote& vote = votes[surfel.landmark];
-      const float sign =
-          std::copysign(1.0F, vote.direction.dot(surfel.normal_H)) * (vote.side < 0.0F ? -1.0F : 1.0F);
-      surfel.normal_H *= sign;
-      surfel.backed = std::abs(vote.side) > 0.5F * vote.surfels;
+      const Side& side = sides[surfel.landmark];
+      surfel.normal_H *= std::copysign(1.0F, side.direction.dot(surfel.normal_H));
+      surfel.backed = side.backed;
     }
   }
+  return surfels;
+}
+
+/// The sides that coamings' walls turn outward; the others as they are.
+std::vector<Side> with_walls(std::vector<Side> sides, std::span<const Point> outward) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!outward[i].isZero(0.0F)) {
+      sides[i] = {outward[i], true};
+    }
+  }
+  return sides;
 }
 
 std::vector<Landmark> describe_landmarks(const Relief& relief, const std::vector<Surfel>& surfels,
                                          const std::vector<RimPoint>& rims, std::uint32_t landmarks,
-                                         const std::vector<bool>& is_wall) {
+                                         std::span<const Point> outward) {
   std::vector<Landmark> described(landmarks);
   std::vector<float> members(landmarks, 0.0F);
   const auto add = [&](std::uint32_t number, LandmarkKind kind, SurfaceClass faces, const Point& p) {
@@ -122,7 +147,8 @@ std::vector<Landmark> describe_landmarks(const Relief& relief, const std::vector
   };
   for (const Surfel& surfel : surfels) {
     if (surfel.landmark != Surfel::kNoLandmark) {
-      const LandmarkKind kind = is_wall[surfel.landmark] ? LandmarkKind::coaming_wall : LandmarkKind::surface;
+      const LandmarkKind kind =
+          outward[surfel.landmark].isZero(0.0F) ? LandmarkKind::surface : LandmarkKind::coaming_wall;
       add(surfel.landmark, kind, surfel.surface, surfel.centre_H);
     }
   }
@@ -138,7 +164,7 @@ std::vector<Landmark> describe_landmarks(const Relief& relief, const std::vector
 
 }  // namespace
 
-void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel>& surfels) {
+std::vector<Surfel> oriented_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel> surfels) {
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     Surfel& surfel = surfels[i];
     if (!surfel.planar) {
@@ -150,10 +176,11 @@ void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel
     surfel.backed = ahead != behind;
     surfel.normal_H *= ahead && !behind ? -1.0F : 1.0F;
   }
+  return surfels;
 }
 
-std::vector<Landmark> find_landmarks(const Cloud& points_H, const KdTree& map, const Relief& relief,
-                                     std::vector<Surfel>& surfels, std::vector<RimPoint>& rims) {
+LandmarkedMap find_landmarks(const Cloud& points_H, const KdTree& map, const Relief& relief,
+                             std::vector<Surfel> surfels, std::vector<RimPoint> rims) {
   std::uint32_t landmarks = 0;
   Cloud points;
   Cloud normals;
@@ -176,11 +203,11 @@ std::vector<Landmark> find_landmarks(const Cloud& points_H, const KdTree& map, c
   for (std::size_t i = 0; i < of.size(); ++i) {
     surfels[of[i]].landmark = flat[i];
   }
-  give_landmarks_one_side(surfels, landmarks);
   points.clear();
   for (const RimPoint& rim : rims) {
     points.push_back(rim.p_H);
   }
+  std::vector<Side> sides = sides_of(surfels, landmarks);
   const std::vector<std::uint32_t> narrow =
       cluster(points, kFewestRimPoints, landmarks, [&](std::uint32_t i, std::uint32_t j) {
         return rims[i].across_H.dot(rims[j].across_H) > kSameDirection &&
@@ -189,9 +216,12 @@ std::vector<Landmark> find_landmarks(const Cloud& points_H, const KdTree& map, c
   for (std::size_t i = 0; i < rims.size(); ++i) {
     rims[i].landmark = narrow[i];
   }
-  measure_rims(map, rims);
-  const std::vector<bool> is_wall = find_coaming_walls(rims, landmarks, surfels);
-  return describe_landmarks(relief, surfels, rims, landmarks, is_wall);
+  sides.resize(landmarks);  // rims have no surfels to turn
+  rims = measured_rims(map, std::move(rims));
+  const std::vector<Point> outward = find_coaming_walls(rims, landmarks, surfels);
+  surfels = facing(std::move(surfels), with_walls(std::move(sides), outward));
+  std::vector<Landmark> described = describe_landmarks(relief, surfels, rims, landmarks, outward);
+  return {std::move(described), std::move(surfels), std::move(rims)};
 }
 
 }  // namespace hulltrack

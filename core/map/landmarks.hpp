@@ -28,15 +28,24 @@ struct Landmark {
 
 inline constexpr float kTile = 4.0F;  // m: side of the cubes at whose borders landmarks end
 
-/// Makes planar surfels Surfel::backed if the map has something close to one side of them only, and turns
-/// their normals to the free side. `surfels`: as compute_surfels() gives them; `map`: the tree over the map.
-void orient_surfels(const Cloud& points_H, const KdTree& map, std::vector<Surfel>& surfels);
+/// `surfels` with sides: planar ones become Surfel::backed if the map has something close to one side of them
+/// only, and their normals point to the free side. `surfels`: as compute_surfels() gives them; `map`: the
+/// tree over the map.
+[[nodiscard]] std::vector<Surfel> oriented_surfels(const Cloud& points_H, const KdTree& map,
+                                                   std::vector<Surfel> surfels);
 
-/// Marks movable surfels. Gives the other planar surfels and the rim points the number of their landmark.
-/// Turns the normals of a landmark to one side, measures the rims and finds the coamings' walls. Returns the
-/// landmarks by number. `points_H`: the point of each surfel.
-[[nodiscard]] std::vector<Landmark> find_landmarks(const Cloud& points_H, const KdTree& map,
-                                                   const Relief& relief, std::vector<Surfel>& surfels,
-                                                   std::vector<RimPoint>& rims);
+/// What of a map is a landmark, and the surfels and rim points that know it.
+struct LandmarkedMap {
+  std::vector<Landmark> landmarks;  // by number
+  std::vector<Surfel> surfels;
+  std::vector<RimPoint> rims;
+};
+
+/// Finds the landmarks among oriented surfels and the points of find_rims(). Surfels come back with `movable`
+/// and `landmark`; their normals turned to one side of their landmark, of a coaming's wall away from the
+/// rim's middle (a wall is not seen from within the coaming). Rim points come back measured. `points_H`: the
+/// point of each surfel.
+[[nodiscard]] LandmarkedMap find_landmarks(const Cloud& points_H, const KdTree& map, const Relief& relief,
+                                           std::vector<Surfel> surfels, std::vector<RimPoint> rims);
 
 }  // namespace hulltrack

@@ -123,11 +123,12 @@ void time_map_parts(const Cloud& cloud_H, Parts& parts) {
   done("planes");
   const OccupancyGrid occupancy(subset_H);
   done("occupancy");
-  orient_surfels(subset_H, tree, surfels);
+  surfels = oriented_surfels(subset_H, tree, std::move(surfels));
   done("sides");
   std::vector<RimPoint> rims = find_rims(cloud_H, tree, relief);
   done("rims");
-  const std::vector<Landmark> landmarks = find_landmarks(subset_H, tree, relief, surfels, rims);
+  const std::vector<Landmark> landmarks =
+      find_landmarks(subset_H, tree, relief, std::move(surfels), std::move(rims)).landmarks;
   done("landmarks");
   require(!landmarks.empty() && !planes.planes().empty(), "a map without surfaces");
 }
