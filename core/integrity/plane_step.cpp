@@ -9,47 +9,44 @@
 namespace hulltrack {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
 constexpr std::size_t kFewestObservations = 12;
 constexpr int kSteps = 5;                // after three the result changes by less than 0.1 mm
 constexpr double kKernel = 0.05;         // m: two to three sigma of a return's distance from a 5 cm map
 constexpr double kSmallestSigma = 0.01;  // m: range noise of a LiDAR; robust_sigma() is never smaller
-constexpr double kLength = 10.0;         // m: makes rotations comparable to translations; half a hatch
+// A direction is free if its eigenvalue is smaller than this share of the largest.
+constexpr double kFree = 1e-6;
 
-struct Normal {
-  Matrix6 H = Matrix6::Zero();
-  Vector6 g = Vector6::Zero();
-};
-
-Vector6 jacobian(const SurfelObservation& o, const Eigen::Vector3d& centre) {
-  Vector6 j;
-  j << (o.p_W - centre).cross(o.n_W) / kLength, o.n_W;
-  return j;
+/// What is left of an observation's offset after a twist about the system's centre, m.
+double residual(const PlaneSystem& system, const SurfelObservation& o, const Twist& twist) {
+  return o.offset - PlaneSystem::change(system.jacobian(o.p_W, o.n_W, 0.0), twist);
 }
 
-Normal accumulate(std::span<const SurfelObservation> observations, const Eigen::Vector3d& centre,
-                  const Vector6& x) {
-  Normal normal;
+/// The normal equations at a twist.
+PlaneSystem system_at(std::span<const SurfelObservation> observations, const Eigen::Vector3d& centre,
+                      const Twist& twist) {
+  PlaneSystem system(centre, kKernel);
   for (const SurfelObservation& o : observations) {
-    const Vector6 j = jacobian(o, centre);
-    const double r = o.offset - j.dot(x);
-    const double k2 = kKernel * kKernel;
-    const double w = o.weight * k2 * k2 / ((k2 + r * r) * (k2 + r * r));
-    normal.H.noalias() += w * j * j.transpose();
-    normal.g.noalias() += w * o.offset * j;
+    system.add(system.jacobian(o.p_W, o.n_W, 0.0), residual(system, o, twist), o.weight);
   }
-  return normal;
+  return system;
+}
+
+bool leaves_a_direction_free(const PlaneSystem& system) {
+  Twist in_metres;  // rotations times the lever
+  in_metres << Eigen::Vector3d::Constant(1.0 / PlaneSystem::kLever), Eigen::Vector3d::Ones();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(
+      in_metres.asDiagonal() * system.normal_matrix() * in_metres.asDiagonal(), Eigen::EigenvaluesOnly);
+  return !(eigen.eigenvalues()[0] > kFree * eigen.eigenvalues()[5]);
 }
 
 /// Sigma of one return: 1.4826 times the median absolute residual. Each residual is first multiplied by the
-/// root of the number of returns that its mean is worth.
-double robust_sigma(std::span<const SurfelObservation> observations, const Eigen::Vector3d& centre,
-                    const Vector6& x) {
+/// root of the number of returns of which it is the mean.
+double robust_sigma(std::span<const SurfelObservation> observations, const PlaneSystem& system,
+                    const Twist& twist) {
   std::vector<double> residuals;
   residuals.reserve(observations.size());
   for (const SurfelObservation& o : observations) {
-    residuals.push_back(std::sqrt(o.weight) * std::abs(o.offset - jacobian(o, centre).dot(x)));
+    residuals.push_back(std::sqrt(o.weight) * std::abs(residual(system, o, twist)));
   }
   const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
   std::nth_element(residuals.begin(), middle, residuals.end());
@@ -70,27 +67,26 @@ PlaneStep solve_plane_step(std::span<const SurfelObservation> observations,
   }
   centre /= static_cast<double>(observations.size());
 
-  Vector6 x = Vector6::Zero();  // [rotation * kLength; translation] about the centroid
+  Twist twist = Twist::Zero();  // of the hull, about the centroid
   Matrix6 H;
   for (int i = 0; i < kSteps; ++i) {
-    const Normal normal = accumulate(observations, centre, x);
-    const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(normal.H, Eigen::EigenvaluesOnly);
-    if (!(eigen.eigenvalues()[0] > 1e-6 * eigen.eigenvalues()[5])) {
+    const PlaneSystem system = system_at(observations, centre, twist);
+    if (leaves_a_direction_free(system)) {
       return step;
     }
-    x = normal.H.ldlt().solve(normal.g);
-    H = normal.H;
+    // All directions are solved for: far off its planes a good pose has small weights, and few pairs by them.
+    // The solution moves returns onto planes; the step moves planes to where the returns are.
+    twist -= system.solve(0.0).twist;
+    H = system.normal_matrix();
   }
-  const double sigma = PlaneSystem::kInflation * robust_sigma(observations, centre, x);
-  Eigen::DiagonalMatrix<double, 6> scale;
-  scale.diagonal() << Eigen::Vector3d::Constant(1.0 / kLength), Eigen::Vector3d::Ones();
-  const Matrix6 covariance = scale * (sigma * sigma * H.inverse()) * scale;
-
+  const double sigma =
+      PlaneSystem::kInflation * robust_sigma(observations, PlaneSystem(centre, kKernel), twist);
+  const Matrix6 covariance = sigma * sigma * H.inverse();
   Eigen::Matrix<double, 3, 6> to_reference;
   to_reference << -skew(reference_W - centre), Eigen::Matrix3d::Identity();
   step.solved = true;
-  step.rotation = x.head<3>() / kLength;
-  step.translation = to_reference * (scale * x);
+  step.rotation = twist.head<3>();
+  step.translation = to_reference * twist;
   step.covariance_translation = to_reference * covariance * to_reference.transpose();
   step.covariance_rotation = covariance.topLeftCorner<3, 3>();
   return step;

@@ -5,15 +5,15 @@
 namespace hulltrack {
 namespace {
 
-/// x = H^-1 g along H's eigenvectors with an eigenvalue of kFewestPairs or more; returns how many have less.
+/// x = H^-1 g along H's eigenvectors with an eigenvalue of `fewest` or more; returns how many have less.
 template <int N>
 int solve_held(const Eigen::Matrix<double, N, N>& H, const Eigen::Matrix<double, N, 1>& g,
-               Eigen::Matrix<double, N, 1>& x) {
+               Eigen::Matrix<double, N, 1>& x, double fewest = PlaneSystem::kFewestPairs) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(H);
   int free = 0;
   for (int i = 0; i < N; ++i) {
     const double eigenvalue = eigen.eigenvalues()[i];
-    if (!(eigenvalue >= PlaneSystem::kFewestPairs)) {
+    if (!(eigenvalue >= fewest)) {
       ++free;
       continue;
     }
@@ -46,10 +46,10 @@ PlaneSystem::Solution PlaneSystem::solve(double bend_off, double bend_informatio
   return solution;
 }
 
-PlaneSystem::Solution PlaneSystem::solve() const {
+PlaneSystem::Solution PlaneSystem::solve(double fewest_pairs) const {
   Solution solution;
-  solution.free =
-      solve_held<6>(H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>(), g_.head<6>(), solution.twist);
+  solution.free = solve_held<6>(H_.topLeftCorner<6, 6>().selfadjointView<Eigen::Upper>(), g_.head<6>(),
+                                solution.twist, fewest_pairs);
   solution.twist.head<3>() /= kLever;
   return solution;
 }

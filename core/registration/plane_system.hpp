@@ -45,9 +45,10 @@ class PlaneSystem {
   void add(const Eigen::Vector3d& p, const Eigen::Vector3d& n, double r, double rise = 0.0) {
     add(jacobian(p, n, rise), r);
   }
-  /// Adds a pair whose jacobian() is known.
-  void add(const Vector7& j, double r) {
-    const double w = weight_of(r);
+  /// Adds a pair whose jacobian() is known; `returns`: of how many independent returns its residual is the
+  /// mean.
+  void add(const Vector7& j, double r, double returns = 1.0) {
+    const double w = returns * weight_of(r);
     for (int row = 0; row < 7; ++row) {
       const double wj = w * j[row];
       for (int column = row; column < 7; ++column) {
@@ -69,8 +70,8 @@ class PlaneSystem {
   /// the variance of the known bend; infinite: the bend is not changed. `bend_off`: the present bend less the
   /// known one, m.
   [[nodiscard]] Solution solve(double bend_off, double bend_information) const;
-  /// Solves for the pose; the bend is not changed.
-  [[nodiscard]] Solution solve() const;
+  /// Solves for the pose; the bend is not changed. Directions that fewer pairs hold are free.
+  [[nodiscard]] Solution solve(double fewest_pairs = kFewestPairs) const;
   /// Solves for a translation alone.
   [[nodiscard]] Solution solve_shift() const;
 
@@ -79,6 +80,10 @@ class PlaneSystem {
     Vector7 j;
     j << (p - centre_).cross(n) / kLever, n, -rise * n.z();
     return j;
+  }
+  /// How much a twist about centre() changes the residual of a pair with this jacobian(), m.
+  [[nodiscard]] static double change(const Vector7& j, const Twist& twist) {
+    return kLever * j.head<3>().dot(twist.head<3>()) + j.segment<3>(3).dot(twist.tail<3>());
   }
   [[nodiscard]] double weight_of(double r) const {
     const double share = kernel2_ / (kernel2_ + r * r);
