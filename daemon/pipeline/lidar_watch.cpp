@@ -5,6 +5,7 @@
 
 #include "core/base/text.hpp"
 #include "daemon/pipeline/live_time.hpp"
+#include "daemon/pipeline/standing.hpp"
 #include "lidar_drivers/model_registry.hpp"
 
 namespace hulltrack {
@@ -52,24 +53,20 @@ Faults LidarWatch::update(const LidarCounters& counters, SteadyTime now) {
   update_silence(counters, now);
   update_refused(counters, now);
   update_quality(counters, now);
-  Faults standing = 0;
-  standing |= silent_ ? fault::lidar_silent : Faults{0};
-  standing |= counters.status.clock_fault ? fault::clock : Faults{0};
-  standing |= counters.status.disputed ? fault::foreign_packets : Faults{0};
-  return standing;
+  return standing_of(counters.status, silent_);
 }
 
 void LidarWatch::update_silence(const LidarCounters& counters, SteadyTime now) {
-  const SteadyTime heard =
-      counters.status.packets > 0 ? live_steady_time(counters.status.last_received) : start_;
-  silent_ = now - heard > config_.timeout;
+  const Nanoseconds silence =
+      silence_of(counters.status, live_measurement_time(start_), live_measurement_time(now));
+  silent_ = silence > config_.timeout;
   silence_log_.update(
       silent_, now,
       [&] {
         return format_text(
             "%s: no usable packet on UDP port %u for %.1f s; health is 0 until it is back. Check its power, "
             "its cable, that it sends to this computer and that a firewall lets it through",
-            name_.c_str(), config_.port, to_seconds(now - heard));
+            name_.c_str(), config_.port, to_seconds(silence));
       },
       [&](Nanoseconds lasted) {
         return format_text("%s: packets again after %.1f s", name_.c_str(),

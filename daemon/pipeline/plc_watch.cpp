@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/base/text.hpp"
-#include "core/kinematics/joint_history.hpp"
+#include "daemon/pipeline/live_time.hpp"
 
 namespace hulltrack {
 namespace {
@@ -17,9 +17,7 @@ bool link_broken(LinkOutcome outcome) {
 PlcWatch::PlcWatch(const PlcConfig& config, LogSink& log, SteadyTime start)
     : config_(config),
       name_("PLC " + config.host + ":" + std::to_string(config.port)),
-      stale_after_(config.heartbeat_timeout > Nanoseconds{0} ? config.heartbeat_timeout
-                                                             : JointHistory::kMaxGap),
-      last_news_(start),
+      news_(config, live_measurement_time(start)),
       link_log_(log, LogLevel::error),
       read_log_(log, LogLevel::error),
       write_log_(log, LogLevel::error),
@@ -63,7 +61,7 @@ void PlcWatch::polled(const PlcPoll& poll, SteadyTime now) {
         [&](Nanoseconds) { return name_ + ": can be read again"; });
   }
   if (poll.ok() && poll.fresh) {
-    last_news_ = poll.stamp();
+    news_.heard(live_measurement_time(poll.stamp()));
   }
 }
 
@@ -115,12 +113,12 @@ void PlcWatch::wrote(const PlcWrite& write, SteadyTime now) {
 }
 
 Faults PlcWatch::standing(SteadyTime now) {
-  const bool stale = now - last_news_ > stale_after_;
+  const bool stale = news_.is_stale(live_measurement_time(now));
   stale_log_.update(
       stale, now,
       [&] {
         return format_text("%s: no new joint values for %.1f s, so no new pose; %s", name_.c_str(),
-                           to_seconds(now - last_news_),
+                           to_seconds(news_.silence(live_measurement_time(now))),
                            !link_up_          ? "the link is down"
                            : refusal_.empty() ? "its heartbeat does not move: is its program running?"
                                               : refusal_.c_str());

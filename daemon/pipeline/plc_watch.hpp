@@ -1,14 +1,14 @@
 // How does the PLC stand? Judges polls and writes: faults for the registers, words for the log.
 //
-// Stale: no new sample (heartbeat moved, not torn) for heartbeat_timeout, or for 250 ms where the PLC has
-// no heartbeat. Each condition has one line when it begins and one when it ends.
-// Thread rule: one owner (the plc thread). `now` is handed in.
+// When its data are stale is said in standing.hpp. Each condition has one line when it begins and one when it
+// ends. Thread rule: one owner (the plc thread). `now` is handed in.
 #pragma once
 
 #include <string>
 
 #include "daemon/log/condition_log.hpp"
 #include "daemon/pipeline/joint_gate.hpp"
+#include "daemon/pipeline/standing.hpp"
 #include "plc/plc_client.hpp"
 
 namespace hulltrack {
@@ -33,8 +33,7 @@ class PlcWatch {
 
   PlcConfig config_;
   std::string name_;  // "PLC 192.168.10.10:502"
-  Nanoseconds stale_after_;
-  SteadyTime last_news_;
+  PlcNews news_;
   Faults value_fault_ = 0;
   bool link_was_lost_ = false;
   bool link_up_ = false;

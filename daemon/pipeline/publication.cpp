@@ -7,11 +7,9 @@
 namespace hulltrack {
 namespace {
 
-Nanoseconds age_of(const TrackResult& result, SteadyTime now) {
-  return now - SteadyTime{result.time.time_since_epoch()};
-}
+Nanoseconds age_of(const TrackResult& result, MeasurementTime now) { return now - result.time; }
 
-void put_pose(const TrackResult& result, SteadyTime now, WriteBlock& block) {
+void put_pose(const TrackResult& result, MeasurementTime now, WriteBlock& block) {
   const Eigen::Vector3d displacement = result.pose.displacement();
   const Eigen::Vector3d rpy = result.pose.rpy();
   block.frame = result.frame;
@@ -46,7 +44,7 @@ void Publication::begin_anew(Nanoseconds max_age) {
   }
 }
 
-void Publication::frame(const TrackResult& result, SteadyTime now, Nanoseconds processing) {
+void Publication::frame(const TrackResult& result, MeasurementTime now, Nanoseconds processing) {
   any_frame_ = true;
   newest_ = result;
   newest_.frame += frames_before_;
@@ -54,7 +52,7 @@ void Publication::frame(const TrackResult& result, SteadyTime now, Nanoseconds p
   events(result.faults & fault::events, now);
 }
 
-void Publication::events(Faults faults, SteadyTime now) {
+void Publication::events(Faults faults, MeasurementTime now) {
   for (std::size_t bit = 0; bit < event_until_.size(); ++bit) {
     if ((faults >> bit & 1u) != 0) {
       event_until_[bit] = now + kEventHold;
@@ -62,7 +60,7 @@ void Publication::events(Faults faults, SteadyTime now) {
   }
 }
 
-WriteBlock Publication::block(const PublicationContext& context, SteadyTime now) {
+WriteBlock Publication::block(const PublicationContext& context, MeasurementTime now) {
   WriteBlock block;
   block.state = state(context, now);
   block.health = block.state == State::tracking;
@@ -79,7 +77,7 @@ WriteBlock Publication::block(const PublicationContext& context, SteadyTime now)
   return block;
 }
 
-State Publication::state(const PublicationContext& context, SteadyTime now) const {
+State Publication::state(const PublicationContext& context, MeasurementTime now) const {
   if (context.stopped) {
     return State::stopped;
   }
@@ -101,7 +99,7 @@ State Publication::state(const PublicationContext& context, SteadyTime now) cons
   return newest_.state;
 }
 
-Faults Publication::faults(const PublicationContext& context, SteadyTime now) const {
+Faults Publication::faults(const PublicationContext& context, MeasurementTime now) const {
   const auto conditions_of_frame = static_cast<Faults>(newest_.faults & ~fault::events);
   Faults all = context.standing;
   if (any_frame_ && !context.every_lidar_silent) {  // an old frame's conditions say nothing about now

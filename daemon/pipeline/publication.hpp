@@ -3,8 +3,8 @@
 // Holds what ICD 2.2 asks to be held: the pose of the last published health 1, the figures of the newest
 // frame, each event bit for a second. The health flag falls here by itself when the pose grows older than
 // health.max_age_ms, whatever the tracker last said. Asks no clock; the same calls give the same blocks.
-// Live only: measurement time counts nanoseconds of the monotonic clock, so a pose's age is
-// now - TrackResult::time. Thread rule: one owner (the plc thread). Cost: constant, no allocation.
+// `now` is on measurement time, so a pose's age is now - TrackResult::time, live and in a replay. Thread
+// rule: one owner. Cost: constant, no allocation.
 #pragma once
 
 #include <array>
@@ -35,13 +35,13 @@ class Publication {
   void begin_anew(Nanoseconds max_age);
 
   /// A frame is done. `processing`: last packet received to registers ready.
-  void frame(const TrackResult& result, SteadyTime now, Nanoseconds processing);
+  void frame(const TrackResult& result, MeasurementTime now, Nanoseconds processing);
 
   /// Something happened outside a frame: plc_link_lost, foreign_packets, frame_dropped.
-  void events(Faults faults, SteadyTime now);
+  void events(Faults faults, MeasurementTime now);
 
   /// The block to write now, heartbeats left at 0.
-  [[nodiscard]] WriteBlock block(const PublicationContext& context, SteadyTime now);
+  [[nodiscard]] WriteBlock block(const PublicationContext& context, MeasurementTime now);
 
  private:
   /// The part of the block that only changes while health is 1.
@@ -50,8 +50,8 @@ class Publication {
     TrackResult result;
   };
 
-  [[nodiscard]] State state(const PublicationContext& context, SteadyTime now) const;
-  [[nodiscard]] Faults faults(const PublicationContext& context, SteadyTime now) const;
+  [[nodiscard]] State state(const PublicationContext& context, MeasurementTime now) const;
+  [[nodiscard]] Faults faults(const PublicationContext& context, MeasurementTime now) const;
 
   Nanoseconds max_age_;
   bool any_frame_ = false;           // of the configuration in force
@@ -59,7 +59,7 @@ class Publication {
   TrackResult newest_;
   Nanoseconds processing_{0};
   HealthyPose healthy_;
-  std::array<SteadyTime, 16> event_until_{};
+  std::array<MeasurementTime, 16> event_until_{};
 };
 
 }  // namespace hulltrack

@@ -61,7 +61,8 @@ RecordingPlayer::RecordingPlayer(const std::filesystem::path& folder, const Conf
       router_(std::move(router)),
       builder_(std::move(builder)),
       rows_(std::move(rows)),
-      gate_(joint_gate_config(config.plc)) {}
+      gate_(joint_gate_config(config.plc)),
+      news_(config.plc, measurement_time_from_ns(rows_.front().t_ns)) {}
 
 Result<bool> RecordingPlayer::next(Scan& scan) {
   Result<bool> frame = read_until_frame(scan);
@@ -71,19 +72,18 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
   any_frame_ = true;
   play_plc_until(scan.segments.empty() ? scan.end : scan.last_firing);
   played_ = scan.end;
-  const bool frozen =
-      plc_.heartbeat_timeout > Nanoseconds{0} && scan.end - last_news_ > plc_.heartbeat_timeout;
   inputs_.hold = latch_.hold();
   inputs_.reacquire = latch_.take_reacquire();
-  inputs_.standing = value_fault_;
   first_firing_ = scan.first_firing;
   last_firing_ = scan.last_firing;
   if (value_fault_ != 0) {
     ++doubtful_;
     last_doubt_ = inputs_.joint_trouble;
   }
-  inputs_.standing |= frozen ? fault::plc_stale : Faults{0};
-  inputs_.standing |= look_at_lidars(scan.end);
+  context_ = {.standing = value_fault_, .command = latch_.command()};
+  context_.standing |= news_.is_stale(scan.end) ? fault::plc_stale : Faults{0};
+  look_at_lidars(scan.end);
+  inputs_.standing = context_.standing;
   return true;
 }
 
@@ -126,21 +126,18 @@ Result<bool> RecordingPlayer::read_until_frame(Scan& scan) {
   return true;
 }
 
-/// As the service's watch of a LiDAR does it, once a frame.
-Faults RecordingPlayer::look_at_lidars(MeasurementTime now) {
-  Faults standing = 0;
+/// Adds to the context how the LiDARs stand.
+void RecordingPlayer::look_at_lidars(MeasurementTime now) {
+  context_.every_lidar_silent = true;
   for (std::size_t i = 0; i < lidars_.size(); ++i) {
     const LidarStatus status = builder_.status(i);
-    const MeasurementTime heard = status.packets > 0 ? status.last_received : first_datagram_;
-    const bool silent = now - heard > lidars_[i].timeout;
+    const bool silent = silence_of(status, first_datagram_, now) > lidars_[i].timeout;
     trouble_[i].silent += silent ? 1 : 0;
     trouble_[i].clock += status.clock_fault ? 1 : 0;
     if (status.clock_fault) trouble_[i].last_clock = status.clock;
-    standing |= silent ? fault::lidar_silent : Faults{0};
-    standing |= status.clock_fault ? fault::clock : Faults{0};
-    standing |= status.disputed ? fault::foreign_packets : Faults{0};
+    context_.standing |= standing_of(status, silent);
+    context_.every_lidar_silent = context_.every_lidar_silent && silent;
   }
-  return standing;
 }
 
 std::string RecordingPlayer::explain_lidars() const {
@@ -225,7 +222,7 @@ void RecordingPlayer::play_row(const PlcCsvRow& row) {
   value_fault_ = outcome.faults;
   inputs_.joint_trouble = outcome.reason;
   if (outcome.verdict != JointGate::Verdict::no_news) {
-    last_news_ = presented;
+    news_.heard(presented);
   }
   sample.on_trial = outcome.verdict == JointGate::Verdict::on_trial;
   if (outcome.verdict == JointGate::Verdict::believed || sample.on_trial) {

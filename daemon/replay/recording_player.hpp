@@ -17,6 +17,8 @@
 #include "daemon/config/config.hpp"
 #include "daemon/pipeline/command_word.hpp"
 #include "daemon/pipeline/joint_gate.hpp"
+#include "daemon/pipeline/publication.hpp"
+#include "daemon/pipeline/standing.hpp"
 #include "lidar_drivers/datagram_router.hpp"
 #include "lidar_drivers/pcap_source.hpp"
 #include "lidar_drivers/scan_builder.hpp"
@@ -38,6 +40,8 @@ class RecordingPlayer {
 
   [[nodiscard]] const JointHistory& joints() const { return joints_; }
   [[nodiscard]] const FrameInputs& inputs() const { return inputs_; }
+  /// What surrounds that frame for the registers, at the end of its scan.
+  [[nodiscard]] const PublicationContext& context() const { return context_; }
 
   /// What the tracker made of the frame that next() gave last.
   void judged(const TrackResult& result);
@@ -64,8 +68,7 @@ class RecordingPlayer {
     ClockReading last_clock{};  // the newest that was not believed
   };
 
-  /// lidar_silent, clock.
-  Faults look_at_lidars(MeasurementTime now);
+  void look_at_lidars(MeasurementTime now);
   [[nodiscard]] std::string explain_no_frame() const;
   [[nodiscard]] std::string explain_no_joints() const;
   /// When the joints of `row` were measured.
@@ -91,11 +94,12 @@ class RecordingPlayer {
   CommandLatch latch_;
   JointHistory joints_;
   FrameInputs inputs_;
+  PublicationContext context_;
   Faults value_fault_ = 0;
   std::uint64_t doubtful_ = 0;  // frames in which joint values were not believed
   std::string last_doubt_;
   MeasurementTime first_firing_{}, last_firing_{};  // of the frame that next() gave last
-  MeasurementTime last_news_{};
+  PlcNews news_;
   MeasurementTime played_{};
 };
 

@@ -118,7 +118,7 @@ void PlcThread::take_frame() {
   frame_sequence_ = frame.sequence;
   reason_ = frame.result.reason;
   gate_.frame_done(frame.first_firing, frame.last_firing, frame.result.joints_confirmed);
-  publication_.frame(frame.result, steady_now(), frame.done - frame.last_received);
+  publication_.frame(frame.result, live_measurement_time(steady_now()), frame.done - frame.last_received);
   if (const auto& top = frame.result.found_top; top && quay_keys(*top) != told_top_) {
     told_top_ = quay_keys(*top);
     log_.write(LogLevel::notice, describe_found_top(*top));
@@ -148,9 +148,9 @@ bool PlcThread::write(bool stopped) {
   if (watch_.link_was_lost()) {
     events |= fault::plc_link_lost;
   }
-  publication_.events(events, now);
+  publication_.events(events, live_measurement_time(now));
   view_.standing = watch_.standing(now);
-  const WriteBlock block = publication_.block(context(stopped, now), now);
+  const WriteBlock block = publication_.block(context(stopped, now), live_measurement_time(now));
   const PlcWrite written = stopped ? write_farewell(client_, block) : client_.write(block);
   if (stopped) {
     farewell_ = written;

@@ -173,7 +173,8 @@ PlcWrite Service::say_farewell() {
     return stand_in_->say_farewell();
   }
   PlcClient client(*plc_, {}, registers_.heartbeat);
-  return write_farewell(client, registers_.publication.block({.stopped = true}, steady_now()));
+  return write_farewell(client,
+                        registers_.publication.block({.stopped = true}, live_measurement_time(steady_now())));
 }
 
 void Service::begin_reload() {

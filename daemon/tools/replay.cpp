@@ -10,6 +10,7 @@
 #include "daemon/config/read_config.hpp"
 #include "daemon/pipeline/frame_pipeline.hpp"
 #include "daemon/pipeline/load_map.hpp"
+#include "daemon/pipeline/publication.hpp"
 #include "daemon/pipeline/quay_file.hpp"
 #include "daemon/replay/csv_file.hpp"
 #include "daemon/replay/frame_csv.hpp"
@@ -138,12 +139,22 @@ std::optional<CsvFile> table(const std::string& file, const char* header, const 
   return file.empty() ? std::nullopt : std::optional(value_or_throw(CsvFile::create(file, header, option)));
 }
 
+/// The frame with the state, health and faults that the registers have. The pose, the distances and the
+/// reason stay the frame's.
+TrackResult as_published(TrackResult track, const WriteBlock& block) {
+  track.state = block.state;
+  track.health = block.health;
+  track.faults = block.faults;
+  return track;
+}
+
 void replay(const ReplayOptions& options) {
   must(check_recording_folder(options.folder));
   const Config config = load_config(options);
   std::unique_ptr<RecordingPlayer> player = value_or_throw(RecordingPlayer::open(options.folder, config));
   ReplaySummary summary(load_truth(options.folder), config.tracker.hull.max_speed);
   FramePipeline pipeline(config, map_of(config), load_quay(config.quay_file));
+  Publication publication(config.tracker.health.max_age);
   std::optional<CsvFile> csv = table(options.csv, kFrameCsvHeader, "--csv");
   std::optional<CsvFile> joints = table(options.joints, kJointCsvHeader, "--joints");
 
@@ -160,8 +171,10 @@ void replay(const ReplayOptions& options) {
       if (!*more) {
         break;
       }
-      const FrameReport report = pipeline.process(scan, player->joints(), player->inputs());
+      FrameReport report = pipeline.process(scan, player->joints(), player->inputs());
       player->judged(report.track);
+      publication.frame(report.track, scan.end, report.processing);
+      report.track = as_published(std::move(report.track), publication.block(player->context(), scan.end));
       const double ms = to_milliseconds(report.processing);
       summary.add(report.track, ms);
       if (csv) {

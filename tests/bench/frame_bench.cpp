@@ -90,7 +90,7 @@ void time_frames(const FrameRecording& recording, RegistrationMethod method,
     const Milliseconds decoding = watch.lap();
     const FrameReport report = pipeline.process(scan, recording.joints, {});
     const Milliseconds tracking = watch.lap();
-    const SteadyTime now{scan.last_firing.time_since_epoch()};
+    const MeasurementTime now = scan.last_firing;
     publication.frame(report.track, now, report.processing);
     const WriteBlock block = publication.block({}, now);
     const WriteRegisters registers = encode_write_block(block, config.plc.write);

@@ -10,9 +10,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr SteadyTime kStart{std::chrono::seconds(1000)};
+constexpr MeasurementTime kStart{std::chrono::seconds(1000)};
 
-TrackResult healthy_frame(SteadyTime mid, std::uint32_t number, double x) {
+TrackResult healthy_frame(MeasurementTime mid, std::uint32_t number, double x) {
   TrackResult r;
   r.frame = number;
   r.time = MeasurementTime{mid.time_since_epoch()};
@@ -26,7 +26,7 @@ TrackResult healthy_frame(SteadyTime mid, std::uint32_t number, double x) {
   return r;
 }
 
-TrackResult lost_frame(SteadyTime mid, std::uint32_t number) {
+TrackResult lost_frame(MeasurementTime mid, std::uint32_t number) {
   TrackResult r = healthy_frame(mid, number, 99.0);
   r.health = false;
   r.state = State::lost;
