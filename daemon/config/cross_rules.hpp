@@ -4,18 +4,13 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
+#include "core/base/broken_rule.hpp"
 #include "daemon/config/config.hpp"
 #include "lidar_drivers/lidar_model.hpp"
 
 namespace hulltrack {
-
-struct BrokenRule {
-  std::vector<std::string> keys;  // concerned, the one to blame first: "plc.read.slew.offset", "lidar.1.port"
-  std::string message;            // what is wrong; what is allowed
-};
 
 /// `models`: those of this build; a LiDAR of another one is judged without.
 [[nodiscard]] std::vector<BrokenRule> check_cross_rules(const Config& config,
