@@ -104,7 +104,7 @@ TEST_F(Hatch, SurfacesOfCargoAndCoversAreMovableAndOfNoLandmark) {
     const bool hold = outside(p.x(), p.y()) < 0.1F && p.z() < kTop - Relief::kDepth - 0.1F;
     const float from_cover = std::abs(p.x() - kHalfLength - kCoverAt);
     const bool beside_cover =
-        from_cover < 2.0F * Relief::kCell + 0.05F && std::abs(p.y()) < kHalfWidth + 0.6F;
+        from_cover < 2.0F * LevelCells::kCell + 0.05F && std::abs(p.y()) < kHalfWidth + 0.6F;
     const bool cover = p.z() > kTop + 0.3F || (from_cover < 0.1F && std::abs(p.y()) < kHalfWidth);
     if (hold || cover) {
       EXPECT_TRUE(surfel.movable) << p.transpose();

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/map/horizons.hpp"
+
 namespace hulltrack {
 namespace {
 
@@ -65,9 +67,9 @@ std::optional<float> horizon_by_definition(const std::map<std::pair<int, int>, f
   float least = std::numeric_limits<float>::infinity();
   for (const auto& [dc, dr] : std::vector<std::pair<int, int>>{
            {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) {
-    const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * Relief::kCell : Relief::kCell;
+    const float stride = dc != 0 && dr != 0 ? std::sqrt(2.0F) * LevelCells::kCell : LevelCells::kCell;
     std::optional<float> highest;
-    for (int i = 1; i <= static_cast<int>(Relief::kReach / stride); ++i) {
+    for (int i = 1; i <= static_cast<int>(kHorizonReach / stride); ++i) {
       if (const auto top = tops.find({column + i * dc, row + i * dr}); top != tops.end()) {
         highest = std::max(highest.value_or(top->second), top->second);
       }
@@ -91,10 +93,10 @@ TEST(Relief, AHorizonIsTheLeastOfTheHighestInEightDirections) {
     for (int i = 0; i < points; ++i) {
       const Point p(along(random), along(random), up(random));
       cloud.push_back(p);
-      float& top =
-          tops.try_emplace({static_cast<int>(p.x() / Relief::kCell), static_cast<int>(p.y() / Relief::kCell)},
-                           p.z())
-              .first->second;
+      float& top = tops.try_emplace({static_cast<int>(p.x() / LevelCells::kCell),
+                                     static_cast<int>(p.y() / LevelCells::kCell)},
+                                    p.z())
+                       .first->second;
       top = std::max(top, p.z());
     }
     const Relief relief(cloud);
@@ -102,8 +104,8 @@ TEST(Relief, AHorizonIsTheLeastOfTheHighestInEightDirections) {
       for (int row = 0; row < 180; ++row) {
         const auto horizon = horizon_by_definition(tops, column, row);
         const float z = horizon.value_or(0.0F) - Relief::kDepth;
-        const Point p((static_cast<float>(column) + 0.5F) * Relief::kCell,
-                      (static_cast<float>(row) + 0.5F) * Relief::kCell, z);
+        const Point p((static_cast<float>(column) + 0.5F) * LevelCells::kCell,
+                      (static_cast<float>(row) + 0.5F) * LevelCells::kCell, z);
         ASSERT_EQ(relief.in_hold(p - Point(0.0F, 0.0F, 0.01F)), horizon.has_value()) << column << ", " << row;
         ASSERT_FALSE(relief.in_hold(p + Point(0.0F, 0.0F, 0.01F))) << column << ", " << row;
         holds += horizon ? 1 : 0;
@@ -222,9 +224,9 @@ TEST(Relief, PointOverTheHoldIsTheNearestCellInsideOfItsRim) {
   const Relief relief(ship());
   const auto over = relief.over_hold_near({0.0F, 5.8F, kRim}, 2.0F);
   ASSERT_TRUE(over);
-  EXPECT_NEAR(over->x(), 0.0F, Relief::kCell);
-  EXPECT_LT(over->y(), 5.0F - Relief::kCell / 2) << "inside";
-  EXPECT_GT(over->y(), 5.0F - 3.0F * Relief::kCell) << "near";
+  EXPECT_NEAR(over->x(), 0.0F, LevelCells::kCell);
+  EXPECT_LT(over->y(), 5.0F - LevelCells::kCell / 2) << "inside";
+  EXPECT_GT(over->y(), 5.0F - 3.0F * LevelCells::kCell) << "near";
   EXPECT_EQ(over->z(), kRim);
   EXPECT_FALSE(relief.over_hold_near({0.0F, 5.8F, kRim}, 0.5F)) << "out of reach";
   EXPECT_FALSE(relief.over_hold_near({19.0F, 9.0F, kRim}, 2.0F)) << "no hatch there";
