@@ -10,11 +10,6 @@
 namespace hulltrack {
 namespace {
 
-// The machine must have stood, or moved steadily, for this long before a frame counts as seen at rest, or at
-// that speed. Observations are up to 1 s old (10 frames at 10 Hz), and a boom swings out for a while: half as
-// long again.
-constexpr Nanoseconds kSteady = std::chrono::milliseconds(1500);
-
 // The quay is found if this share of the observations agree with one misplacement. Most agree if the returns
 // are the quay's. A sixth agree by chance if nothing is in its place: offsets are then spread over the gate
 // of 0.6 m, and 10 cm agree. The limit is between the two, three sigma off either at 60 returns.
@@ -24,18 +19,9 @@ constexpr std::uint32_t kFewestAsked = kFewestObservations / QuayObserver::kFram
 // The quay is surely found if this share agree; the rest may be returns of lorries and people.
 constexpr double kSureShare = 0.8;
 
-// The machine is charged if rays pass through more than this share of a class of planes, of kFewestReached
-// at least. Rays pass through a plane's true place only if what stood there has left (a lorry, a stack of
-// covers), and half of a class does not leave within a tide. With all in place it is one plane in a hundred,
-// at an edge: hardly ever half of twelve.
-constexpr double kMostSeenThrough = 0.5;
-constexpr double kFewestReached = 12.0;
-constexpr std::size_t kRemembered = 100;  // places of planes seen through, of each class
 // The slope of a top that the session has found may be wrong by so many of its sigmas.
 constexpr double kSigmasOfTop = 3.0;
 constexpr const char* kSinceFound = "against where this session found the quay's top, ";
-// The sums of Memory lose 5 % a frame: they cover some twenty frames, two seconds.
-constexpr double kFading = 0.95;
 
 std::optional<QuayPlane> known_top(const QuayConfig& quay) {
   return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
@@ -45,22 +31,6 @@ std::optional<QuayPlane> known_top(const QuayConfig& quay) {
 /// it, are together less than the charge. `left`: what is seen, in the unit of `charged`.
 bool refutes(const JointDoubt& left, double charged = 1.0) {
   return left.reads_too_much / charged + left.hidden / std::abs(charged) < 1.0;
-}
-
-Eigen::Vector3d rate_of(const MachineStand& stand) {
-  return {stand.rate.d_x, stand.rate.theta_r, stand.rate.theta_p};
-}
-
-Eigen::Array<bool, 3, 1> moving(const Eigen::Vector3d& rate) {
-  return rate.array().abs() > kStandsBelow.array();
-}
-
-float extent(const std::deque<Point>& points) {
-  Box box = Box::none();
-  for (const Point& p : points) {
-    box.add(p);
-  }
-  return box.diagonal();
 }
 
 }  // namespace
@@ -91,7 +61,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
   if (sighting == nullptr) {
     return {};
   }
-  remember(*sighting);
+  seen_through_.remember(*sighting);
   seen_ = find_misplacement(sighting->observed->all);
   Verdict verdict = judge(stand);
   bool confirmed = false;
@@ -106,7 +76,7 @@ MachineFinding MachineWitness::look(MeasurementTime time, const FilteredScan& sc
       confirmed = confirmed && finds_large;
     }
   }
-  note_speed(time, stand);
+  steady_.note(time, stand);
   note_rest(time, verdict);
   if (verdict.known && verdict.charge) {
     charges_.refute_none();
@@ -172,7 +142,7 @@ MachineWitness::Verdict MachineWitness::judge(const MachineStand& stand) const {
   }
   // If the quay is surely found in its place on all six axes, planes that are seen through have been removed.
   const bool surely_in_place = found && !verdict.doubt.beyond_class && seen_.holds_all() && is_surely_found();
-  std::string through = surely_in_place ? std::string{} : seen_through();
+  std::string through = surely_in_place ? std::string{} : seen_through_.complaint();
   verdict.known = found || !through.empty();
   if (!through.empty()) {
     verdict.charge = MachineCharge{std::move(through), WrongAltogether{}};
@@ -267,25 +237,10 @@ std::optional<MachineWitness::Verdict> MachineWitness::judge(const MachineStand&
   return std::nullopt;
 }
 
-void MachineWitness::note_speed(MeasurementTime time, const MachineStand& stand) {
-  const Eigen::Vector3d rate = rate_of(stand);
-  const bool stands = !moving(rate).any();
-  const bool the_same =
-      steady_ && stands == !moving(steady_->rate).any() && (stands || !moving(rate - steady_->rate).any());
-  if (!the_same) {
-    steady_ = {time, rate};
-  }
-}
-
-/// All observations are of a machine that stood, or moved as it does.
-bool MachineWitness::is_steady(MeasurementTime time) const {
-  return steady_ && time - steady_->since >= kSteady;
-}
-
 /// Keeps what is seen as the sight at rest, if the machine has stood for long enough, the frame has no
 /// complaint and all six directions are held.
 void MachineWitness::note_rest(MeasurementTime time, const Verdict& verdict) {
-  const bool at_rest = is_steady(time) && !moving(steady_->rate).any();
+  const bool at_rest = steady_.is_settled(time) && steady_.stands();
   if (at_rest && verdict.known && !verdict.charge && seen_.holds_all()) {
     at_rest_ = seen_;
   }
@@ -314,7 +269,7 @@ void MachineWitness::acquit(MeasurementTime time, const MachineStand& stand, con
 bool MachineWitness::refutes_latency(MeasurementTime time, const MachineStand& stand,
                                      const WrongLatency& charged) const {
   const bool the_same_move = (moving(rate_of(stand)) || !moving(charged.rate)).all();
-  return the_same_move && is_steady(time) && at_rest_ && seen_.holds_all() &&
+  return the_same_move && steady_.is_settled(time) && at_rest_ && seen_.holds_all() &&
          refutes(doubt_latency(machine_, stand, seen_, *at_rest_), charged.older);
 }
 
@@ -352,43 +307,16 @@ bool MachineWitness::is_surely_found() const {
   return double(seen_.agreeing) >= kSureShare * double(seen_.observations);
 }
 
-void MachineWitness::remember(const QuaySighting& sighting) {
-  for (std::size_t i = 0; i < planes_.size(); ++i) {
-    planes_[i].reached = kFading * planes_[i].reached + sighting.planes[i].reached;
-    const Cloud& through_W = sighting.planes[i].seen_through_W;
-    planes_[i].seen_through = kFading * planes_[i].seen_through + double(through_W.size());
-    std::deque<Point>& where_W = planes_[i].where_W;
-    where_W.insert(where_W.end(), through_W.begin(), through_W.end());
-    where_W.erase(where_W.begin(),
-                  where_W.end() - static_cast<std::ptrdiff_t>(std::min(where_W.size(), kRemembered)));
-  }
-}
-
-/// The complaint in words, if rays pass through half of a class of the quay's planes, spread over more than
-/// kLongestThing; else empty.
-std::string MachineWitness::seen_through() const {
-  for (std::size_t i = 0; i < planes_.size(); ++i) {
-    const Memory& of_class = planes_[i];
-    if (of_class.reached >= kFewestReached && of_class.seen_through > kMostSeenThrough * of_class.reached &&
-        extent(of_class.where_W) > QuaySearch::kLongestThing) {
-      return format_text(
-          "the scan sees through %.0f %% of the quay's %s surfaces where joints and mount put them",
-          100.0 * of_class.seen_through / of_class.reached, surface_class_name(static_cast<SurfaceClass>(i)));
-    }
-  }
-  return {};
-}
-
 void MachineWitness::forget_sight() {
   seen_ = {};
-  steady_.reset();
+  steady_ = {};
   at_rest_.reset();
   sight_.forget();
   search_.forget();
   if (learner_) {
     learner_->drop_gathered();
   }
-  planes_ = {};
+  seen_through_ = {};
   charges_in_a_row_ = 0;
   charges_.refute_none();
 }

@@ -11,7 +11,6 @@
 // size.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,6 +24,8 @@
 #include "core/witness/machine_doubt.hpp"
 #include "core/witness/machine_finding.hpp"
 #include "core/witness/quay_search.hpp"
+#include "core/witness/seen_through.hpp"
+#include "core/witness/steady_motion.hpp"
 #include "core/witness/top_learner.hpp"
 
 namespace hulltrack {
@@ -83,12 +84,8 @@ class MachineWitness {
                                         const Misplacement& seen, bool by_guess) const;
   void weigh_other_places(const MachineStand& stand, const std::optional<WrongJoint>& asked,
                           Verdict& verdict);
-  void note_speed(MeasurementTime time, const MachineStand& stand);
-  [[nodiscard]] bool is_steady(MeasurementTime time) const;
   void note_rest(MeasurementTime time, const Verdict& verdict);
-  void remember(const QuaySighting& sighting);
   void forget_sight();
-  [[nodiscard]] std::string seen_through() const;
 
   std::shared_ptr<const QuayMap> map_;
   std::optional<QuayPlane> top_;
@@ -99,21 +96,10 @@ class MachineWitness {
   QuaySearch search_;
   Misplacement seen_;
   std::optional<MeasurementTime> last_look_;
-  struct Memory {          // of one class of planes; sums that lose 5 % a frame
-    double reached = 0.0;  // planes that rays reached
-    double seen_through = 0.0;
-    std::deque<Point> where_W;  // middles of the last planes that were seen through
-  };
-  std::array<Memory, QuayMap::kClasses> planes_;
+  SeenThrough seen_through_;
   /// What was seen when the machine last stood: lateness is measured against it.
   std::optional<Misplacement> at_rest_;
-  /// Since when all joints have stood, or since when none has changed its speed; the speeds, m/s and rad/s by
-  /// JointName.
-  struct Steady {
-    MeasurementTime since;
-    Eigen::Vector3d rate;
-  };
-  std::optional<Steady> steady_;
+  SteadyMotion steady_;
   int charges_in_a_row_ = 0;  // frames
   MachineCharges charges_;
 };
