@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
+#include "core/geometry/box.hpp"
 #include "core/map/hull_map.hpp"
 #include "core/map/stray_points.hpp"
 #include "core/quay/quay_map.hpp"
+#include "core/tracking/hull_tracker.hpp"
 #include "core/tracking/map_judge.hpp"
 
 namespace hulltrack::test {
@@ -200,6 +203,41 @@ void look_through(const HullMap& map) {
   }
 }
 
+/// What the map shows of itself to a LiDAR 15 m above its middle, a few hundred returns; joints at zero.
+Scan scan_of(const HullMap& map, const Eigen::Vector3d& sensor_W, std::uint32_t frame) {
+  Scan scan;
+  scan.frame_number = frame;
+  scan.begin = MeasurementTime{frame * std::chrono::milliseconds(100)};
+  scan.end = scan.begin + std::chrono::milliseconds(100);
+  scan.first_firing = scan.begin;
+  scan.last_firing = scan.mid_time();
+  scan.lidars.resize(1);
+  const Cloud& seen = map.subset_H();
+  for (std::size_t i = 0; i < seen.size(); i += seen.size() / 400 + 1) {
+    const Point p_L = seen[i] - sensor_W.cast<float>();
+    scan.points.push_back({p_L.x(), p_L.y(), p_L.z(), 0, 100, 0, 0});
+  }
+  scan.segments.push_back({scan.mid_time(), 0, static_cast<std::uint32_t>(scan.points.size()), 0});
+  return scan;
+}
+
+void track_on(std::shared_ptr<const HullMap> map, const TrackerConfig& config) {
+  const Box box = bounding_box(map->subset_H());
+  SensorConfig sensor;
+  sensor.mount.translation() = (0.5F * (box.min + box.max)).cast<double>() + Eigen::Vector3d(0.0, 0.0, 15.0);
+  JointHistory joints(100);
+  for (int i = -10; i < 30; ++i) {
+    joints.add({MeasurementTime{i * std::chrono::milliseconds(20)}, {}});
+  }
+  HullTracker tracker(config, {}, {sensor}, map);
+  for (std::uint32_t frame = 0; frame < 2; ++frame) {
+    const TrackResult result =
+        tracker.process(scan_of(*map, sensor.mount.translation(), frame), joints, FrameInputs{});
+    require(result.pose.T_W_H.matrix().allFinite(), "a pose that is none");
+    require(!result.health, "health before the berth was searched");
+  }
+}
+
 }  // namespace
 
 Cloud any_cloud(std::span<const std::uint8_t> bytes, std::size_t most) { return Maker(bytes, most).make(); }
@@ -227,11 +265,12 @@ void use_as_map(Cloud cloud) {
   for (const MapFinding& finding : judge_cloud(cloud, config)) {
     require(!finding.message.empty(), "a finding without words");
   }
-  const HullMap map(std::move(cloud));
-  look_through(map);
-  for (const MapFinding& finding : judge_map(map)) {
+  const auto map = std::make_shared<const HullMap>(std::move(cloud));
+  look_through(*map);
+  for (const MapFinding& finding : judge_map(*map)) {
     require(!finding.message.empty(), "a finding without words");
   }
+  track_on(map, config);
 }
 
 }  // namespace hulltrack::test
