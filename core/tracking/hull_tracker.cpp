@@ -16,12 +16,6 @@
 namespace hulltrack {
 namespace {
 
-/// 1-sigma along the largest principal axis of covariance + step * step^T. `step` is the correction that the
-/// scan asks for; it is not applied, so it counts as error.
-double sigma_of(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& step) {
-  return largest_sigma(covariance + step * step.transpose());
-}
-
 /// Half of the longer horizontal side of the map's box, m: the lever of the hull's ends when she turns.
 double half_length(const HullMap* map) {
   assert(map != nullptr);
@@ -79,7 +73,6 @@ struct HullTracker::Impl {
                                                      const JointHistory& joints) const;
   [[nodiscard]] SearchProgress search(const FrameFindings& findings);
   [[nodiscard]] MachineFinding follow_joints(const FrameFindings& findings, const MachineStand& stand);
-  [[nodiscard]] TrackResult result_of(const FrameFindings& findings, HealthVerdict verdict) const;
 };
 
 TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joints,
@@ -109,8 +102,9 @@ TrackResult HullTracker::Impl::process(const Scan& scan, const JointHistory& joi
   }
   auto [next, verdict] = judge_health(limits, std::move(memory), findings);
   memory = std::move(next);
-  TrackResult result = result_of(findings, std::move(verdict));
+  TrackResult result = track_result(findings, std::move(verdict));
   result.frame = scan.frame_number;
+  result.found_top = findings.may_register() ? machine_witness.found_top() : std::nullopt;
   result.motion = motion.update(result.time, result.health, result.pose);
   return result;
 }
@@ -225,37 +219,6 @@ MachineFinding HullTracker::Impl::follow_joints(const FrameFindings& findings, c
     finding.faults = finding.reason.empty() ? Faults{0} : fault::plc_value;
   }
   return finding;
-}
-
-TrackResult HullTracker::Impl::result_of(const FrameFindings& findings, HealthVerdict verdict) const {
-  TrackResult result;
-  result.time = findings.time;
-  const Registration& registration = findings.registration;
-  result.registered = registration.found;
-  result.pose = registration.pose;
-  result.converged = registration.converged;
-  result.iterations = registration.iterations;
-  result.matched = registration.matched;
-  if (registration.found) {
-    const Examination& examination = findings.examination;
-    const PlaneStep& step = examination.step;
-    if (step.solved) {
-      result.sigma_translation = sigma_of(step.covariance_translation, step.translation);
-      result.sigma_rotation = sigma_of(step.covariance_rotation, step.rotation);
-    }
-    result.covariance = examination.covariance;
-    result.metrics = examination.metrics;
-    result.bend = examination.bend.d;
-    result.sigma_bend = examination.bend.sigma;
-  }
-  result.state = verdict.state;
-  result.health = verdict.state == State::tracking;
-  result.faults = verdict.faults;
-  result.reason = std::move(verdict.reason);
-  result.joints_confirmed = findings.machine.confirmed;
-  result.joint_doubts = findings.machine.joints;
-  result.found_top = findings.may_register() ? machine_witness.found_top() : std::nullopt;
-  return result;
 }
 
 HullTracker::HullTracker(const TrackerConfig& config, const MachineConfig& machine,
