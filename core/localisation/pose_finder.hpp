@@ -19,6 +19,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/filter/even_subset.hpp"
 #include "core/filter/voxel_filter.hpp"
 #include "core/geometry/cloud.hpp"
 #include "core/localisation/bend_filter.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/map/covers_place.hpp"
 #include "core/map/horizons.hpp"
 
 namespace hulltrack {
@@ -12,8 +13,6 @@ namespace {
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 constexpr float kNoRim = std::numeric_limits<float>::quiet_NaN();
-// What stands higher than a rim by less than this still belongs to the rim: sheer, rest bars and noise.
-constexpr float kOnRim = 0.15F;  // m
 
 // smooth_rims() takes every third cell along both axes, to save time: 9 x 9 cells around each one at most.
 constexpr int kStride = 3;
@@ -36,8 +35,9 @@ Relief::Relief(std::span<const Point> cloud_H) : cells_(cloud_H) {
   find_insides();
   smooth_rims();
   number_holds();
-  raise_covers_place();
-  find_tall_columns(top);
+  covers_from_ = find_covers_place(cells_, rims_of_insides(),
+                                   [this](Cell low, Cell high) { return any_hold(low, high); });
+  tall_ = find_tall_columns(cells_, top, covers_from_);
 }
 
 bool Relief::in_hold(const Point& p) const {
@@ -151,63 +151,6 @@ void Relief::number_holds() {
       }
     }
     holds += begun ? 1 : 0;
-  });
-}
-
-/// Finds for each cell the lowest rim within kCoversReach along both axes: the minimum along rows first, then
-/// along columns. The covers' place begins kOnRim above it.
-void Relief::raise_covers_place() {
-  covers_from_.assign(cells_.size(), kNowhere);
-  const int reach =
-      LevelCells::cells(kCoversReach) + 1;  // one more: cells inside a hold begin one cell off its edge
-  const std::vector<float> rims = rims_of_insides();
-  LevelCells::Window<float> window(kNoRim);
-  std::vector<float> along_rows;
-  for (std::size_t tile = 0; tile < cells_.corners().size(); ++tile) {
-    const Cell corner = cells_.corners()[tile];
-    if (!any_hold(
-            {corner.column - reach, corner.row - reach},
-            {corner.column + LevelCells::kTile - 1 + reach, corner.row + LevelCells::kTile - 1 + reach})) {
-      continue;
-    }
-    cells_.copy_around(rims, tile, 1, window);
-    along_rows.assign(static_cast<std::size_t>((LevelCells::kTile + 2 * reach) * LevelCells::kTile),
-                      kNowhere);
-    for (int row = 0; row < LevelCells::kTile + 2 * reach; ++row) {
-      for (int column = 0; column < LevelCells::kTile; ++column) {
-        float& least = along_rows[static_cast<std::size_t>(row * LevelCells::kTile + column)];
-        for (int dc = -reach; dc <= reach; ++dc) {
-          const float rim = window.at({corner.column + column + dc, corner.row + row - reach});
-          least = std::isnan(rim) ? least : std::min(least, rim + kOnRim);
-        }
-      }
-    }
-    for (int row = 0; row < LevelCells::kTile; ++row) {
-      for (int column = 0; column < LevelCells::kTile; ++column) {
-        float& least = covers_from_[tile * LevelCells::kTileCells +
-                                    static_cast<std::size_t>(row * LevelCells::kTile + column)];
-        for (int i = row; i <= row + 2 * reach; ++i) {
-          least = std::min(least, along_rows[static_cast<std::size_t>(i * LevelCells::kTile + column)]);
-        }
-      }
-    }
-  }
-}
-
-/// Marks cells whose highest point is in the covers' place, and their neighbours: a cover's sides may lean.
-void Relief::find_tall_columns(const std::vector<float>& top) {
-  tall_.assign(cells_.size(), 0);
-  cells_.for_each_cell([&](Cell c, std::size_t place) {
-    if (top[place] <= covers_from_[place]) {
-      return;
-    }
-    tall_[place] = 1;
-    for (const auto& [dc, dr] : kDirections) {
-      const std::size_t beside = cells_.place_of({c.column + dc, c.row + dr});
-      if (beside != LevelCells::kNoPlace && covers_from_[beside] != kNowhere) {
-        tall_[beside] = 1;
-      }
-    }
   });
 }
 

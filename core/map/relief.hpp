@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/geometry/cloud.hpp"
+#include "core/map/covers_place.hpp"
 #include "core/map/level_cells.hpp"
 
 namespace hulltrack {
@@ -26,8 +27,6 @@ namespace hulltrack {
 class Relief {
  public:
   static constexpr float kDepth = 2.0F;  // m: the deck is less than this below coamings and bulwark
-  /// Covers that are folded or rolled away stand up to this far from their hatch, m.
-  static constexpr float kCoversReach = 3.0F;
 
   explicit Relief(std::span<const Point> cloud_H);
 
@@ -63,8 +62,6 @@ class Relief {
   void find_insides();
   void smooth_rims();
   void number_holds();
-  void raise_covers_place();
-  void find_tall_columns(const std::vector<float>& top);
   [[nodiscard]] std::vector<float> rims_of_insides() const;
   [[nodiscard]] bool any_hold(Cell low, Cell high) const;
 
