@@ -6,6 +6,7 @@
 
 #include "core/base/text.hpp"
 #include "core/registration/plane_system.hpp"
+#include "core/witness/refutation.hpp"
 
 namespace hulltrack {
 namespace {
@@ -25,12 +26,6 @@ constexpr const char* kSinceFound = "against where this session found the quay's
 
 std::optional<QuayPlane> known_top(const QuayConfig& quay) {
   return quay.height && quay.slope ? std::optional(QuayPlane{*quay.height, *quay.slope}) : std::nullopt;
-}
-
-/// Whether a frame shows that what is charged is gone: what is seen, and all of what wear may take away from
-/// it, are together less than the charge. `left`: what is seen, in the unit of `charged`.
-bool refutes(const JointDoubt& left, double charged = 1.0) {
-  return left.reads_too_much / charged + left.hidden / std::abs(charged) < 1.0;
 }
 
 }  // namespace
@@ -256,45 +251,15 @@ void MachineWitness::acquit(MeasurementTime time, const MachineStand& stand, con
                                             asked->amount));
   }
   if (const auto latency = charges_.charged<WrongLatency>()) {
-    charges_.hear<WrongLatency>(refutes_latency(time, stand, *latency));
+    const bool comparable = at_rest_ && seen_.holds_all() && steady_.is_settled(time);
+    charges_.hear<WrongLatency>(comparable && refutes(*latency, {machine_, stand, seen_}, *at_rest_));
   }
   if (const auto place = charges_.charged<WrongPlace>()) {
-    charges_.hear<WrongPlace>(refutes_place(stand, *place));
+    charges_.hear<WrongPlace>(
+        refutes(*place, {machine_, stand, seen_}, doubt_of_reference(),
+                [this](const Twist& off) { return search_.look_there(*map_, off).refuted; }));
   }
   charges_.hear<WrongAltogether>(seen_.holds_all() && is_surely_found());
-}
-
-/// While the joints that moved when it was charged move again, and steadily: older observations would be held
-/// against a speed that was not theirs.
-bool MachineWitness::refutes_latency(MeasurementTime time, const MachineStand& stand,
-                                     const WrongLatency& charged) const {
-  const bool the_same_move = (moving(rate_of(stand)) || !moving(charged.rate)).all();
-  return the_same_move && steady_.is_settled(time) && at_rest_ && seen_.holds_all() &&
-         refutes(doubt_latency(machine_, stand, seen_, *at_rest_), charged.older);
-}
-
-/// What is wrong may be carried by the boom, as a mount is, or stay as it is in W, as a wrong travel does:
-/// both have to be refuted. What was not seen of it may be anything. If it is too large to show as offsets,
-/// things that cannot have left have to be missed there, too.
-bool MachineWitness::refutes_place(const MachineStand& stand, const WrongPlace& charged) {
-  const std::vector<Twist> of_reference = doubt_of_reference();
-  // now(twist, point_W): the twist of the charged place as the error of today, about a point.
-  const auto is_gone = [&](const auto& now) {
-    std::vector<Twist> unsure = of_reference;
-    for (const Twist& twist : charged.unheld) {
-      unsure.push_back(now(twist, seen_.centre_W));
-    }
-    const Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();
-    return refutes(doubt_twist(machine_, stand, seen_, now(charged.off, seen_.centre_W), unsure)) &&
-           (!charged.beyond_gate || search_.look_there(*map_, now(charged.off, origin_W)).refuted);
-  };
-  return is_gone([&](const Twist& off, const Eigen::Vector3d& point_W) {
-           const Twist carried = carried_by_boom(machine_, charged.stand, stand, off);
-           return about_point(point_W - stand.sensor_W, carried);
-         }) &&
-         is_gone([&](const Twist& off, const Eigen::Vector3d& point_W) {
-           return about_point(point_W - charged.stand.sensor_W, off);
-         });
 }
 
 bool MachineWitness::is_found() const {

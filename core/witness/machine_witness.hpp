@@ -74,9 +74,6 @@ class MachineWitness {
                                              const QuaySearch::Elsewhere& elsewhere) const;
   void acquit(MeasurementTime time, const MachineStand& stand, const Verdict& verdict,
               const std::optional<WrongJoint>& asked);
-  [[nodiscard]] bool refutes_latency(MeasurementTime time, const MachineStand& stand,
-                                     const WrongLatency& charged) const;
-  [[nodiscard]] bool refutes_place(const MachineStand& stand, const WrongPlace& charged);
   [[nodiscard]] bool is_found() const;
   [[nodiscard]] bool is_surely_found() const;
   [[nodiscard]] std::optional<MachineCharge> charge_of_lateness(const MachineStand& stand) const;
