@@ -21,8 +21,9 @@ constexpr double kLeastShare = 0.5;
 // Surfels of a class; with fewer its share is not judged. Three sigma of a share of 0.7 are 0.3 with 20.
 constexpr std::uint32_t kFewestForShare = 20;
 
-// Largest share of surfels seen through; above it the pose is contradicted. The share is 0.02 at a pose that
-// is right, 0.07 and more at one that is off by a metre or more.
+// Largest share of surfels seen through; above it the pose is contradicted. At a pose that is right the share
+// was 0.013 at most (1,650 frames of seven recordings of a berth: VLP-16 with draft, shift, rain and moved
+// covers, two VLP-16, XT-32), at places one hatch off 0.17 and more.
 constexpr double kMostSeenThrough = 0.05;
 
 // With fewer confirmed surfels the pose counts as unconstrained. With 40 a share of 0.9 has a sigma of 5 %.

@@ -72,6 +72,7 @@ Line fit_line(const std::vector<RimPoint*>& rim, const Point& side) {
 /// the rest onto it and turns across_H square to it. With too few points left the rim is given up.
 void straighten(std::vector<RimPoint*>& rim) {
   const Point side = rim.front()->across_H;
+  // The first round takes out what stands beside the coaming, the second what turned the line until then.
   for (const float farthest : {0.3F, 0.1F, kOffLine}) {
     const Line line = fit_line(rim, side);
     std::erase_if(rim, [&](RimPoint* point) {
@@ -117,7 +118,7 @@ void measure_rim(const KdTree& map, std::vector<RimPoint*>& rim) {
   std::array<float, kBins> profile{};
   Cloud neighbours;
   for (const RimPoint* point : rim) {
-    map.within(point->p_H, 1.2F * kRimAside, neighbours);
+    map.within(point->p_H, std::hypot(kRimAside, 0.5F * kRimSpacing, kRimThickness), neighbours);
     for (const Point& neighbour : neighbours) {
       const Point d = neighbour - point->p_H;
       const float s = point->across_H.dot(d);

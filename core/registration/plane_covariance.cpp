@@ -72,7 +72,10 @@ PlaneCovariance PlaneCovarianceEstimator::estimate() const {
   out.pose = scale().asDiagonal() * (A_inverse * B * A_inverse) * scale().asDiagonal();
   out.by_bend = scale().asDiagonal() * by_bend;
   const double bend_curvature = bend_alone.dot(A_.col(6));
-  if (bend_curvature > 1e-3) {
+  // With less than a thousandth of what a pair at the hull's end tells, the bend's sigma is 2 cm (kPairSigma)
+  // over the root of that, 0.6 m: more than any hull bends.
+  constexpr double kLeastCurvature = 1e-3;
+  if (bend_curvature > kLeastCurvature) {
     out.bend_off = bend_sum / bend_curvature;
     out.bend_sigma = std::sqrt(n / (n - kParameters) * bend_spread) / bend_curvature;
   }
