@@ -33,6 +33,7 @@ float extent(const std::deque<Point>& points) {
 void SeenThrough::remember(const QuaySighting& sighting) {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     planes_[i].reached = kFading * planes_[i].reached + sighting.planes[i].reached;
+    planes_[i].now = sighting.planes[i].reached > 0;
     const Cloud& through_W = sighting.planes[i].seen_through_W;
     planes_[i].through = kFading * planes_[i].through + double(through_W.size());
     std::deque<Point>& where_W = planes_[i].where_W;
@@ -45,7 +46,8 @@ void SeenThrough::remember(const QuaySighting& sighting) {
 std::string SeenThrough::complaint() const {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const Memory& of_class = planes_[i];
-    if (of_class.reached >= kFewestReached && of_class.through > kMostSeenThrough * of_class.reached &&
+    if (of_class.now && of_class.reached >= kFewestReached &&
+        of_class.through > kMostSeenThrough * of_class.reached &&
         extent(of_class.where_W) > QuaySearch::kLongestThing) {
       return format_text(
           "the scan sees through %.0f %% of the quay's %s surfaces where joints and mount put them",

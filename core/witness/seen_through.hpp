@@ -17,12 +17,14 @@ class SeenThrough {
   /// What a frame shows.
   void remember(const QuaySighting& sighting);
   /// The complaint in words, if rays pass through half of a class of the quay's planes, spread over more than
-  /// one movable thing (QuaySearch::kLongestThing); else empty.
+  /// one movable thing (QuaySearch::kLongestThing); else empty. A frame whose rays reached none of a class
+  /// has no complaint of it: what earlier frames saw is theirs to say.
   [[nodiscard]] std::string complaint() const;
 
  private:
   struct Memory {               // of one class of planes; sums that lose 5 % a frame
     double reached = 0.0;       // planes that rays reached
+    bool now = false;           // the last frame\'s did
     double through = 0.0;       // of these, planes that rays passed through
     std::deque<Point> where_W;  // middles of the last planes that were seen through
   };

@@ -113,6 +113,13 @@ TEST(MachineWitness, AMachineThatIsMetresOffSeesThroughTheQuaysWalls) {
   EXPECT_NE(finding.reason.find("transverse"), std::string::npos) << finding.reason;
 }
 
+TEST(MachineWitness, WhatEarlierFramesSawThroughAccusesNobodyWhileNothingIsSeen) {
+  Frames frames(whole_map());
+  EXPECT_EQ(frames.run(2, {7.0, 0.0, 0.0}, kAllSurfaces).faults, 0) << "two may be wrong";
+  EXPECT_EQ(frames.run(30, {7.0, 0.0, 0.0}, {}).faults, 0) << "a LiDAR that is blind";
+  EXPECT_EQ(frames.run(3, {7.0, 0.0, 0.0}, kAllSurfaces).faults, fault::plc_value);
+}
+
 TEST(MachineWitness, AJointThatIsOffByMoreThanAGateIsFoundWhereTheQuayIsMet) {
   // So far to this side no ray goes through a wall, and none of its returns is near it.
   const std::vector<std::pair<Joints, const char*>> cases = {{{-1.3, 0.0, 0.0}, "travel read 1.3"},
