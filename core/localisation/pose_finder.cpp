@@ -223,9 +223,9 @@ void PoseFinder::settle(const Track& track, const Pose& start, const Pose& T_H_W
 
 /// How far the search has come, and the first place that rivals T_H_W.
 SearchProgress PoseFinder::progress(const Pose& T_H_W) const {
-  SearchProgress progress{search_.tried(), search_.starts(), std::nullopt};
+  SearchProgress progress{search_.tried(), search_.starts(), std::nullopt, searches_};
   if (search_is_stale_) {
-    progress = {0, 1, std::nullopt};
+    progress = {0, 1, std::nullopt, searches_};
   }
   const Eigen::Vector3d& reference = hull_.reference_point;
   for (const HullSearch::Place& place : search_.places()) {

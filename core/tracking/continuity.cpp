@@ -64,6 +64,7 @@ void check_continuity(HealthMemory& memory, const FrameFindings& e, Objections& 
   const double dt = std::max(0.0, to_seconds(e.time - memory.track.followed->time));
   const double reach = kFastestHull * dt + kJumpNoise;
   if (reach > kUnseen) {
+    memory.track.searches += memory.track.unique ? 1 : 0;  // else a search is under way
     memory.track.unique = false;
     memory.track.followed.reset();
     memory.track.speed_record = HullSpeedRecord{};

@@ -117,14 +117,17 @@ void check_attitude(const HealthLimits& limits, const FrameFindings& e, Objectio
 }
 
 /// While the place is not certain: degraded until all starts of the search are tried, then lost if another
-/// place explains the scan as well. If none does and no check objects, the place is certain (`unique`).
+/// place explains the scan as well. If none does and no check objects, the place is certain (`unique`). A
+/// search that was wanted before the place was lost says nothing.
 void check_uniqueness(HealthMemory& memory, const SearchProgress& search, Objections& objections) {
   if (memory.track.unique) {
     return;
   }
-  if (search.tried < search.starts) {
+  const bool of_now = search.number == memory.track.searches;
+  if (!of_now || search.tried < search.starts) {
     objections.add(State::degraded, 0,
-                   format_text("searching the berth: %zu of %zu places tried", search.tried, search.starts));
+                   format_text("searching the berth: %zu of %zu places tried", of_now ? search.tried : 0,
+                               search.starts));
   } else if (search.rival) {
     const Eigen::Vector3d& d = *search.rival;
     objections.add(
@@ -202,9 +205,8 @@ HealthLimits health_limits(const TrackerConfig& config, double half_length) {
 
 std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, HealthMemory memory,
                                                     const FrameFindings& e) {
-  const bool was_unique = memory.track.unique;
   if (e.reacquire) {
-    const std::uint64_t searches = memory.track.searches;
+    const std::uint64_t searches = memory.track.searches + 1;
     memory = HealthMemory{};
     memory.state = State::acquiring;
     memory.track.searches = searches;
@@ -220,10 +222,8 @@ std::pair<HealthMemory, HealthVerdict> judge_health(const HealthLimits& limits, 
   } else {
     verdict = judge_pose(limits, memory, e);
   }
-  Track& track = memory.track;
-  track.searches += e.reacquire || (was_unique && !track.unique) ? 1 : 0;
-  if (track.followed && track.unique) {
-    track.last_unique = track.followed;
+  if (memory.track.followed && memory.track.unique) {
+    memory.track.last_unique = memory.track.followed;
   }
   return {std::move(memory), std::move(verdict)};
 }

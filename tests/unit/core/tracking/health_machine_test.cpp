@@ -37,6 +37,7 @@ class Frames {
     e.registration.pose.T_W_H.translation() = T_W_H.translation();
     e.registration.pose.T_W_H.linear() = T_W_H.linear();
     e.reacquire = reacquire;
+    e.search.number = memory_.track.searches;
     auto [next, verdict] = judge_health(limits_, std::move(memory_), e);
     memory_ = std::move(next);
     return verdict;

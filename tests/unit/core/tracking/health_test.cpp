@@ -34,6 +34,7 @@ struct Machine {
     if (change) {
       change(e);
     }
+    e.search.number = memory.track.searches;
     auto [next, verdict] = judge_health(set, memory, e);
     memory = next;
     return verdict;
@@ -301,7 +302,7 @@ TEST(Health, ReacquireForgetsTheLastPoseAndStartsTheSearch) {
   });
   EXPECT_EQ(edge.state, State::acquiring);
   EXPECT_EQ(edge.faults, 0) << "no jump from a pose that is forgotten";
-  EXPECT_NE(edge.reason.find("4 of 13"), std::string::npos) << edge.reason;
+  EXPECT_NE(edge.reason.find("0 of 13"), std::string::npos) << edge.reason << ": it has yet to begin";
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(machine.step(searching).state, State::acquiring) << "the search goes on";
   }
@@ -332,6 +333,21 @@ TEST(Health, AHullOutOfSightForLongIsSearchedForBeforeItIsBelieved) {
     ASSERT_EQ(verdict.state, State::acquiring) << i;
   }
   EXPECT_EQ(machine.step().state, State::tracking) << "searched through, and no rival";
+}
+
+TEST(Health, ASearchThatEndedBeforeThePlaceWasLostDoesNotGiveItBack) {
+  // Held for long enough that she may have been warped to the next hatch; the finder has not searched since.
+  Machine machine = tracking_machine();
+  machine.frame += 40;
+  EXPECT_EQ(machine.step().state, State::acquiring);
+  EXPECT_FALSE(machine.memory.track.unique);
+  EXPECT_EQ(machine.step([](FrameFindings& e) { e.search = {8, 13, std::nullopt}; }).state, State::acquiring);
+  machine.run(5);
+  EXPECT_EQ(machine.memory.state, State::tracking) << "searched through since";
+
+  Machine checked = tracking_machine();
+  EXPECT_EQ(checked.step([](FrameFindings& e) { e.reacquire = true; }).state, State::acquiring)
+      << "nor does one that ended before the edge";
 }
 
 TEST(Health, ARivalKeepsHealthAwayAndSaysWhere) {
