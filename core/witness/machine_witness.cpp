@@ -242,13 +242,14 @@ void MachineWitness::note_rest(MeasurementTime time, const Verdict& verdict) {
 }
 
 /// Tells each charge whether this frame, in which the quay is in place, refutes it; of the joints' charges
-/// only `asked`. A frame in which wear could explain the amount refutes nothing.
+/// only `asked`. A frame in which wear could explain the amount refutes nothing, nor do offsets one that is
+/// too large to show as such.
 void MachineWitness::acquit(MeasurementTime time, const MachineStand& stand, const Verdict& verdict,
                             const std::optional<WrongJoint>& asked) {
   if (asked) {
-    charges_.hear(asked->joint, verdict.refutes_asked ||
-                                    refutes(verdict.doubt.joints.at(static_cast<std::size_t>(asked->joint)),
-                                            asked->amount));
+    const JointDoubt& left = verdict.doubt.joints.at(static_cast<std::size_t>(asked->joint));
+    const bool in_reach = map_ == nullptr || search_.shows_as_offset(asked->joint, asked->amount);
+    charges_.hear(asked->joint, verdict.refutes_asked || (in_reach && refutes(left, asked->amount)));
   }
   if (const auto latency = charges_.charged<WrongLatency>()) {
     const bool comparable = at_rest_ && seen_.holds_all() && steady_.is_settled(time);

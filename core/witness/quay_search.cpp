@@ -176,7 +176,7 @@ bool QuaySearch::loses_as_much(std::size_t counted) {
 /// Whether the error is so small that most observations stay within the gate of their planes, so that offsets
 /// show it without a guess.
 bool QuaySearch::planes_show(const MachineGuess& guess) const {
-  return std::abs(guess.amount) <= shown_up_to_.at(static_cast<std::size_t>(*guess.joint));
+  return shows_as_offset(*guess.joint, guess.amount);
 }
 
 void QuaySearch::note_planes(const QuayObservations& observed, const MachineConfig& machine) {

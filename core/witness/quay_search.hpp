@@ -21,6 +21,7 @@
 
 #include <array>
 #include <bitset>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -73,6 +74,11 @@ class QuaySearch {
   /// Whether guesses would find an error of the joint that is too large to show as offsets from planes. False
   /// until all guesses at the joint have been tried.
   [[nodiscard]] bool would_find(JointName joint) const;
+
+  /// Whether the last frame's planes show an error of this amount as offsets.
+  [[nodiscard]] bool shows_as_offset(JointName joint, double amount) const {
+    return std::abs(amount) <= shown_up_to_.at(static_cast<std::size_t>(joint));
+  }
 
   /// Drops the returns, the kept guess and all answers of would_find(). Begins with the first guess again.
   void forget();

@@ -136,6 +136,14 @@ TEST(MachineWitness, AJointThatIsOffByMoreThanAGateIsFoundWhereTheQuayIsMet) {
   }
 }
 
+TEST(MachineWitness, AJointTooFarOffForOffsetsIsNotAcquittedByWhatHappensToStandAtThePlaceOfAWall) {
+  Frames frames(whole_map());
+  ASSERT_NE(frames.run(30, {-3.0, 0.0, 0.0}, kAllSurfaces).faults, 0);
+  // As long as a trailer, 3 m beside a wall of the map: such a machine sees it in the wall's place.
+  frames.show({{17.0F, -19.0F, 1.0F}, {0.0F, 15.0F, 0.0F}, {0.0F, 0.0F, 4.0F}});
+  EXPECT_NE(frames.run(40, {-3.0, 0.0, 0.0}, {0, 2}).faults, 0);
+}
+
 TEST(MachineWitness, AShedsEndThatIsTallerThanAnyVehicleShowsALargeError) {
   const std::vector<std::size_t> with_shed = {0, 2, 4};  // 6 m of it across the rails
   const auto map = std::make_shared<const QuayMap>(quay_cloud({0, 2, 4, 5}));
