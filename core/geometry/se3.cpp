@@ -20,7 +20,7 @@ Eigen::Matrix3d rotation_from_rpy(const Eigen::Vector3d& rpy) {
 
 Eigen::Vector3d rpy_from_rotation(const Eigen::Matrix3d& R) {
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
-  const double pitch = std::atan2(-R(2, 0), cos_pitch);
+  const double pitch = std::atan2(0.0 - R(2, 0), cos_pitch);  // no negative zero
   if (cos_pitch < 1e-9) {
     return {0.0, pitch, std::atan2(-R(0, 1), R(1, 1))};
   }

@@ -81,7 +81,9 @@ Result<bool> RecordingPlayer::next(Scan& scan) {
     last_doubt_ = inputs_.joint_trouble;
   }
   context_ = {.standing = value_fault_, .command = latch_.command()};
-  context_.standing |= news_.is_stale(scan.end) ? fault::plc_stale : Faults{0};
+  // Rows are played until one brackets the last firing: what comes later is not news yet.
+  const MeasurementTime played_until = scan.segments.empty() ? scan.end : scan.last_firing;
+  context_.standing |= news_.is_stale(played_until) ? fault::plc_stale : Faults{0};
   look_at_lidars(scan.end);
   inputs_.standing = context_.standing;
   return true;

@@ -139,9 +139,12 @@ std::optional<CsvFile> table(const std::string& file, const char* header, const 
   return file.empty() ? std::nullopt : std::optional(value_or_throw(CsvFile::create(file, header, option)));
 }
 
-/// The frame with the state, health and faults that the registers have. The pose, the distances and the
-/// reason stay the frame's.
+/// The frame with the state, health and faults that the registers have. The pose and the distances stay the
+/// frame's, and so does the reason, unless the pose's age alone takes health.
 TrackResult as_published(TrackResult track, const WriteBlock& block) {
+  if (track.health && !block.health) {
+    track.reason = "the pose is older than health.max_age_ms";
+  }
   track.state = block.state;
   track.health = block.health;
   track.faults = block.faults;
