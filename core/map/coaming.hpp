@@ -1,10 +1,9 @@
 // The coamings of a ship's hatches: their tops and the walls that carry the tops.
 //
 // A coaming is welded to the deck. If its top or its wall is seen in another place, this is another ship.
-//   rim: the top of one straight piece of the coaming around a hold (relief.hpp), between its two edges. It
-//   is
-//        too narrow for the surfels of the metric subset and has a row of finer points of its own, those of
-//        one landmark.
+// A rim is the top of one straight piece of the coaming around a hold (relief.hpp), between its two edges. It
+// is too narrow for the surfels of the metric subset and has a row of finer points of its own, those of one
+// landmark.
 // Steps: find_rims(), landmark numbers for the rim points (landmarks.hpp), measured_rims(),
 // find_coaming_walls(). Frame H, metres. Pure functions. Cost: some 5 us a map point near a rim.
 #pragma once

@@ -17,8 +17,8 @@ constexpr float kNowhere = std::numeric_limits<float>::infinity();
 // The horizon of a cell depends on the tiles that LevelCells keeps around it.
 static_assert(kHorizonReach / LevelCells::kCell / LevelCells::kTile == float{LevelCells::kFarTiles});
 
-/// Per tile: 1 if it has no point and one of its four sides has none within kReach. Its cells then have no
-/// horizon.
+/// Per tile: 1 if it has no point and one of its four sides has none within kHorizonReach. Its cells then
+/// have no horizon.
 std::vector<std::uint8_t> open_tiles(const LevelCells& cells, std::span<const float> top) {
   const std::span<const Cell> corners = cells.corners();
   std::vector<std::uint8_t> bare(corners.size());

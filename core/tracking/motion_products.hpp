@@ -45,8 +45,7 @@ class MotionGauge {
   /// The box of the mapped ship, in H, m.
   explicit MotionGauge(const Box& mapped_H);
 
-  /// To be called with every frame. `displacement`: of the reference point, `rpy`: of T_W_H. Poses without
-  /// health are ignored.
+  /// To be called with every frame. Poses without health are ignored.
   [[nodiscard]] MotionProducts update(MeasurementTime time, bool health, const HullPose& pose);
 
  private:
